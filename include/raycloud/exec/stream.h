@@ -1,0 +1,84 @@
+#pragma once
+/// The streaming shape of algorithm: chunks flow from a RaySource through a computation to a RaySink, in
+/// bounded memory, with reading, computing and writing overlapped.
+
+#include <raycloud/core/ray_stream.h>
+#include <raycloud/exec/parallel.h>
+#include <raycloud/exec/progress.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace ray {
+
+struct StreamCounts {
+  std::uint64_t rays_in = 0;   ///< valid rays read
+  std::uint64_t rays_out = 0;  ///< rays written
+  std::uint64_t dropped = 0;   ///< rows left out because of a NaN or infinite value
+};
+
+/// For each chunk: `map(rays)` on any thread, which may change the chunk and returns a value; then, in file
+/// order and one at a time, `fold(rays, value)`, which may change the chunk too; then the sink, if there is
+/// one, encodes on any thread and writes in order. Does not call `sink->finish()`. The result depends neither
+/// on threads nor on how the source cuts its chunks if `map` looks at one ray at a time and `fold` goes
+/// through the rows in order. Memory: pipeline_slots(context) chunks.
+template <class Map, class Fold>
+StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, const Map& map,
+                    const Fold& fold) {
+  using Value = decltype(map(std::declval<RayCloud&>()));
+  struct Item {
+    RawChunk raw;
+    RayCloud rays;
+    Value value{};
+    std::size_t dropped = 0;
+    std::size_t rays_in = 0;
+  };
+  std::vector<Item> items(pipeline_slots(context));
+  StreamCounts counts;
+  using Mode = PipelineStage::Mode;
+  std::vector<PipelineStage> stages;
+  stages.push_back({Mode::parallel, [&](std::size_t slot) {
+                      Item& item = items[slot];
+                      item.dropped = source.decode(item.raw, item.rays);
+                      item.rays_in = item.rays.size();
+                      item.value = map(item.rays);
+                    }});
+  stages.push_back({Mode::ordered, [&](std::size_t slot) {
+                      Item& item = items[slot];
+                      fold(item.rays, item.value);
+                      counts.rays_in += item.rays_in;
+                      counts.dropped += item.dropped;
+                      counts.rays_out += item.rays.size();
+                      if (context.progress != nullptr) context.progress->advance(item.raw.rows);
+                    }});
+  if (sink != nullptr) {
+    stages.push_back(
+        {Mode::parallel, [&](std::size_t slot) { sink->encode(items[slot].rays, items[slot].raw); }});
+    stages.push_back({Mode::ordered, [&](std::size_t slot) { sink->write(items[slot].raw); }});
+  }
+  if (context.progress != nullptr) context.progress->begin("rays", source.info().ray_count.value_or(0));
+  pipeline(
+      context, items.size(), [&](std::size_t slot) { return source.fetch(items[slot].raw); }, stages);
+  if (context.progress != nullptr) context.progress->end();
+  return counts;
+}
+
+/// A value for maps that only change the chunk.
+struct Nothing {};
+
+/// `change(rays)` on every chunk, on any thread, from source to sink.
+template <class Change>
+StreamCounts stream_each(const Context& context, RaySource& source, RaySink& sink, const Change& change) {
+  return stream(
+      context, source, &sink,
+      [&](RayCloud& rays) {
+        change(rays);
+        return Nothing{};
+      },
+      [](RayCloud&, Nothing&) {});
+}
+
+/// Reads a whole stream into one cloud. Memory: the cloud, 61 bytes a ray plus extras.
+[[nodiscard]] RayCloud read_all(const Context& context, RaySource& source);
+
+}  // namespace ray

@@ -1,0 +1,115 @@
+#include <raycloud/core/error.h>
+#include <raycloud/core/ray_cloud.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace ray {
+
+namespace {
+
+template <class T>
+void select_rows(std::vector<T>& column, std::span<const std::uint8_t> mask) {
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < mask.size(); ++row) {
+    // Without a branch: whether a ray is kept is often close to a coin toss.
+    column[kept] = column[row];
+    kept += mask[row] != 0 ? 1 : 0;
+  }
+  column.resize(kept);
+}
+
+}  // namespace
+
+void RayCloud::resize(std::size_t rows) {
+  starts.resize(rows);
+  ends.resize(rows);
+  times.resize(rows);
+  colours.resize(rows);
+  bounded.resize(rows);
+  for (Column& column : extras)
+    column.resize(rows);
+}
+
+void RayCloud::reserve(std::size_t rows) {
+  starts.reserve(rows);
+  ends.reserve(rows);
+  times.reserve(rows);
+  colours.reserve(rows);
+  bounded.reserve(rows);
+}
+
+void RayCloud::select(std::span<const std::uint8_t> mask) {
+  assert(mask.size() == size());
+  if (std::all_of(mask.begin(), mask.end(), [](std::uint8_t keep) { return keep != 0; })) return;
+  select_rows(starts, mask);
+  select_rows(ends, mask);
+  select_rows(times, mask);
+  select_rows(colours, mask);
+  select_rows(bounded, mask);
+  for (Column& column : extras)
+    column.select(mask);
+}
+
+void RayCloud::append(const RayCloud& other) {
+  const std::size_t old_rows = size();
+  for (const Column& column : other.extras) {
+    const Column* mine = extra(column.name());
+    if (mine == nullptr) {
+      extras.emplace_back(column.info(), old_rows);
+    } else if (mine->type() != column.type()) {
+      throw Error(ErrorCode::wrong_content, "column " + column.name() + " is " +
+                                                std::string(name_of(mine->type())) + " in one cloud and " +
+                                                std::string(name_of(column.type())) + " in another");
+    }
+  }
+  starts.insert(starts.end(), other.starts.begin(), other.starts.end());
+  ends.insert(ends.end(), other.ends.begin(), other.ends.end());
+  times.insert(times.end(), other.times.begin(), other.times.end());
+  colours.insert(colours.end(), other.colours.begin(), other.colours.end());
+  bounded.insert(bounded.end(), other.bounded.begin(), other.bounded.end());
+  for (Column& column : extras) {
+    if (const Column* theirs = other.extra(column.name())) {
+      column.append(*theirs);
+    } else {
+      column.resize(ends.size());
+    }
+  }
+}
+
+void RayCloud::transform(const Pose& pose) {
+  for (Eigen::Vector3d& start : starts)
+    start = pose * start;
+  for (Eigen::Vector3d& end : ends)
+    end = pose * end;
+}
+
+Column* RayCloud::extra(std::string_view name) {
+  const auto found =
+      std::find_if(extras.begin(), extras.end(), [&](const Column& c) { return c.name() == name; });
+  return found == extras.end() ? nullptr : &*found;
+}
+
+const Column* RayCloud::extra(std::string_view name) const {
+  return const_cast<RayCloud*>(this)->extra(name);
+}
+
+void RayCloud::set_schema(const std::vector<ColumnInfo>& schema) {
+  if (schema_of(*this) != schema) {
+    extras.clear();
+    for (const ColumnInfo& info : schema)
+      extras.emplace_back(info);
+  }
+  for (Column& column : extras)
+    column.resize(size());
+}
+
+std::vector<ColumnInfo> schema_of(const RayCloud& rays) {
+  std::vector<ColumnInfo> schema;
+  schema.reserve(rays.extras.size());
+  for (const Column& column : rays.extras)
+    schema.push_back(column.info());
+  return schema;
+}
+
+}  // namespace ray
