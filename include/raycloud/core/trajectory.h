@@ -7,8 +7,8 @@
 
 namespace ray {
 
-/// Nodes in strictly increasing time, linear in between. `orientations` (sensor to world, unit length) is empty or
-/// has one per node.
+/// Nodes in strictly increasing time, linear in between. `orientations` (sensor to world, unit length) is
+/// empty or has one per node.
 struct Trajectory {
   std::vector<double> times;               ///< s
   std::vector<Eigen::Vector3d> positions;  ///< m
@@ -24,9 +24,9 @@ struct TrajectorySpot {
   double fraction = 0.0;
 };
 
-/// Where the trajectory is at `time`; the first or last node for a time before or after all of them, never beyond.
-/// `hint` is the node of an earlier answer: a time near it is found in O(1), one d nodes away in O(log d).
-/// Precondition: not empty, `time` is not NaN.
+/// Where the trajectory is at `time`; the first or last node for a time before or after all of them, never
+/// beyond. `hint` is the node of an earlier answer: a time near it is found in O(1), one d nodes away in
+/// O(log d). Precondition: not empty, `time` is not NaN.
 [[nodiscard]] TrajectorySpot spot_at(const Trajectory& trajectory, double time, std::size_t hint = 0);
 
 /// Linear interpolation, exact at the nodes.

@@ -2,6 +2,7 @@
 /// Lengths, durations and angles that cannot be mistaken for each other. Inside, everything is SI (metres,
 /// seconds, radians); "cm" exists only in literals and in the grammar of the commands.
 
+#include <compare>
 #include <numbers>
 
 namespace ray {

@@ -1,0 +1,25 @@
+#pragma once
+/// The list of the commands, for `raycloud`, which must know them without starting them. A test compares it
+/// with the tables of the commands themselves (tests/unit/cli/commands_agree.sh).
+
+#include <array>
+#include <string_view>
+
+namespace ray::cli {
+
+struct ListedCommand {
+  std::string_view name;
+  std::string_view summary;  ///< Command::summary
+};
+
+inline constexpr std::array kCommands{
+    ListedCommand{"rayimport", "make a ray cloud from points and what is known of the sensor"},
+    ListedCommand{"rayexport", "write the points and the trajectory of a ray cloud"},
+    ListedCommand{"rayinfo", "what is in a ray cloud"},
+    ListedCommand{"raytranslate", "move a ray cloud, in place"},
+    ListedCommand{"rayrotate", "rotate a ray cloud about the origin, in place"},
+    ListedCommand{"raydecimate", "thin a ray cloud"},
+    ListedCommand{"rayrender", "picture a ray cloud"},
+};
+
+}  // namespace ray::cli

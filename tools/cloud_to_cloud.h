@@ -1,0 +1,33 @@
+#pragma once
+/// What most commands are: one ray cloud in, one out, through one streaming call of the library.
+
+#include "cli/session.h"
+
+#include <raycloud/core/ray_stream.h>
+#include <raycloud/exec/stream.h>
+#include <raycloud/io/file_options.h>
+
+#include <filesystem>
+#include <functional>
+
+namespace ray::tools {
+
+/// `call(source, sink)` streams all rays; it does not finish the sink.
+using StreamingCall = std::function<StreamCounts(RaySource&, RaySink&)>;
+
+struct CloudToCloud {
+  std::filesystem::path input;
+  std::filesystem::path output;  ///< may be the input: it is replaced when the new cloud is complete
+  double coordinate_step =
+      0.0;  ///< m; if > 0, single precision is left where it would lose more than half of it
+  WriteOptions write = {};
+};
+
+/// Opens, writes the header (the input's, with this command added to its history), streams, finishes and
+/// prints the summary. Where single precision turns out too coarse the cloud is written again in double.
+void run_cloud_to_cloud(cli::Session& session, const CloudToCloud& files, const StreamingCall& call);
+
+/// "3 rays with NaN or infinite values left out", if there were any.
+void note_dropped(cli::Session& session, std::uint64_t dropped);
+
+}  // namespace ray::tools
