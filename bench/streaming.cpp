@@ -1,0 +1,132 @@
+// The streaming commands against `cp` of the same bytes, and LAZ import against a LASzip loop.
+//   bench_streaming BIN_FOLDER BENCH_BIN_FOLDER SCAN.ply WORK_FOLDER [RAYS]
+// Prints a Markdown table. Every ratio is the median of five pairs of runs taken in turn, files in the page
+// cache.
+
+#include "measure.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace {
+
+constexpr int kRuns = 5;
+
+struct Paths {
+  std::string bin, bench, scan, work;
+  double rays = 16e6;
+  [[nodiscard]] std::string command(const std::string& words) const { return "exec " + bin + "/" + words; }
+  [[nodiscard]] std::string file(const std::string& name) const { return work + "/" + name; }
+};
+
+void row(const char* what, const bench::Result& result, double rays, const char* baseline, const char* bar,
+         bool met) {
+  char ratio[64] = "";
+  if (result.base_seconds > 0.0) {
+    std::snprintf(ratio, sizeof ratio, "%.2f (%.2f to %.2f) × %s", result.ratio, result.ratio_min,
+                  result.ratio_max, baseline);
+  }
+  std::printf("| %s | %.3f s | %.1f | %s | %.0f MB | %s | %s |\n", what, result.seconds,
+              rays / result.seconds / 1e6, ratio, result.peak_megabytes, bar, met ? "yes" : "NO");
+  std::fflush(stdout);
+}
+
+void heading() {
+  std::printf(
+      "| command | median | M rays/s | time against the baseline (min to max) | peak memory | bar | met |\n");
+  std::printf("|---|---|---|---|---|---|---|\n");
+}
+
+void make_inputs(const Paths& p) {
+  bench::run(p.bench + "/tile_cloud " + p.scan + " " + std::to_string(static_cast<long long>(p.rays)) + " " +
+             p.file("big.ply"));
+  bench::run(p.command("rayexport -q " + p.file("big.ply") + " " + p.file("points.laz") + " " +
+                       p.file("trajectory.txt")));
+}
+
+void against_cp(const Paths& p) {
+  const std::string big = p.file("big.ply");
+  const std::string out = p.file("out.ply");
+  const bench::Subject cp{"exec cp " + big + " " + p.file("copy.ply"), "rm -f " + p.file("copy.ply")};
+  const auto every = bench::time_against(
+      {p.command("raydecimate -q " + big + " 10 rays -o " + out), "rm -f " + out}, cp, kRuns);
+  row("raydecimate 10 rays", every, p.rays, "cp", "≤ 1.6 × cp", every.ratio <= 1.6);
+
+  const auto exported =
+      bench::time_against({p.command("rayexport -q " + big + " " + out + " -"), "rm -f " + out}, cp, kRuns);
+  row("rayexport to PLY", exported, p.rays, "cp", "≤ 1.6 × cp", exported.ratio <= 1.6);
+
+  const std::string moved = p.file("moved.ply");
+  bench::run("cp " + big + " " + moved);
+  const bench::Subject cp_sync{"cp " + big + " " + p.file("copy.ply") + " && sync " + p.file("copy.ply"),
+                               "rm -f " + p.file("copy.ply") + "; sync"};
+  const auto translated =
+      bench::time_against({p.command("raytranslate -q " + moved + " 0.5,0.25,0"), "sync"}, cp_sync, kRuns);
+  row("raytranslate in place", translated, p.rays, "cp && sync", "≤ 1.6 × cp && sync",
+      translated.ratio <= 1.6);
+  bench::run("rm -f " + moved + " " + out + " " + p.file("copy.ply"));
+}
+
+void rates(const Paths& p) {
+  const std::string big = p.file("big.ply");
+  const std::string out = p.file("out.ply");
+  const auto info = bench::time_against({p.command("rayinfo " + big), ""}, {"exec cat " + big, ""}, kRuns);
+  row("rayinfo", info, p.rays, "cat", "≥ 30 M rays/s", p.rays / info.seconds >= 30e6);
+
+  const auto decimate =
+      bench::time_alone({p.command("raydecimate -q " + big + " 10 cm -o " + out), "rm -f " + out}, kRuns);
+  row("raydecimate 10 cm", decimate, p.rays, "", "≥ 8 M rays/s", p.rays / decimate.seconds >= 8e6);
+
+  const auto render = bench::time_alone(
+      {p.command("rayrender -q " + big + " top ends -o " + p.file("out.png")), "rm -f " + p.file("out.png")},
+      kRuns);
+  row("rayrender top ends", render, p.rays, "", "≥ 15 M rays/s", p.rays / render.seconds >= 15e6);
+  bench::run("rm -f " + out + " " + p.file("out.png"));
+}
+
+void laz_import(const Paths& p) {
+  const std::string laz = p.file("points.laz");
+  const std::string out = p.file("imported.ply");
+  const auto imported = bench::time_against(
+      {p.command("rayimport -q " + laz + " " + p.file("trajectory.txt") + " -o " + out), "rm -f " + out},
+      {"exec " + p.bench + "/laszip_loop " + laz, ""}, kRuns);
+  row("rayimport LAZ", imported, p.rays, "LASzip loop", "≤ 1/1.6 of the loop", imported.ratio <= 1.0 / 1.6);
+  bench::run("rm -f " + out);
+}
+
+void start_up(const Paths& p) {
+  double slowest = 0.0;
+  std::string which;
+  for (const char* name :
+       {"rayimport", "rayexport", "rayinfo", "raytranslate", "rayrotate", "raydecimate", "rayrender"}) {
+    const auto result = bench::time_alone({p.command(std::string(name) + " --version"), ""}, 21);
+    if (result.seconds > slowest) which = name;
+    slowest = std::max(slowest, result.seconds);
+  }
+  std::printf("\nStarting the slowest command (%s): %.1f ms with its shell (bar 15 ms)\n", which.c_str(),
+              slowest * 1e3);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 5) {
+    std::fprintf(stderr, "usage: bench_streaming BIN_FOLDER BENCH_BIN_FOLDER SCAN.ply WORK_FOLDER [RAYS]\n");
+    return 2;
+  }
+  Paths paths{argv[1], argv[2], argv[3], argv[4]};
+  if (argc > 5) paths.rays = std::atof(argv[5]);
+  mkdir(paths.work.c_str(), 0777);
+  make_inputs(paths);
+  std::printf("%.0f rays, %d timed runs each, files in the page cache\n\n", paths.rays, kRuns);
+  heading();
+  rates(paths);
+  against_cp(paths);
+  laz_import(paths);
+  start_up(paths);
+  return 0;
+}

@@ -1,0 +1,19 @@
+#pragma once
+/// What every reader and writer of this room takes.
+
+#include <cstddef>
+
+namespace ray {
+
+struct ReadOptions {
+  /// Most rays in one chunk, at least 1. Rows too long for a buffer of 64 MiB come in smaller chunks.
+  std::size_t chunk_rays = 32768;
+};
+
+struct WriteOptions {
+  /// Force the bytes onto the disk before the output replaces what had its name: for commands that overwrite
+  /// their input, so that a power cut leaves one of the two.
+  bool flush_to_disk = false;
+};
+
+}  // namespace ray

@@ -1,0 +1,36 @@
+#pragma once
+/// Pieces of data put aside on disk until all of them are known.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ray {
+
+/// A file without a name beside `target`, which vanishes with this object whatever happens. Memory: 16 bytes
+/// a piece.
+class LasSpool {
+ public:
+  /// Throws Error(file_access).
+  explicit LasSpool(const std::filesystem::path& target);
+  ~LasSpool();
+  LasSpool(const LasSpool&) = delete;
+  LasSpool& operator=(const LasSpool&) = delete;
+
+  void add(std::span<const std::byte> piece);
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  /// Replaces `piece` by the one of that number.
+  void read(std::size_t number, std::vector<std::byte>& piece) const;
+
+ private:
+  [[noreturn]] void fail(const char* what, int error) const;
+
+  std::string target_;
+  int descriptor_ = -1;
+  std::vector<std::uint64_t> ends_;
+};
+
+}  // namespace ray

@@ -1,0 +1,13 @@
+# The example of every usage, run where its files do not exist, fails with one line that starts with the command's
+# name, and leaves nothing behind.
+mkdir empty && cd empty
+for command in $(commands); do
+  [ "$command" != raycloud ] || continue
+  "$command" --help all | sed -n "s/^ *e\.g\. \($command .*\)/\1/p" >../examples
+  [ -s ../examples ] || { echo "$command --help shows no example"; exit 1; }
+  while read -r example; do
+    # shellcheck disable=SC2086  # words
+    unchanged 1 $example 2>../err
+    [ "$(wc -l <../err)" = 1 ] && grep -q "^$command: " ../err || { echo "$example:"; cat ../err; exit 1; }
+  done <../examples
+done
