@@ -128,6 +128,10 @@ void LazWriter::unpack(const std::byte* record) {
   point.extended_return_number = returns & 15;
   point.extended_number_of_returns = (returns >> 4) & 15;
   point.extended_classification_flags = flags & 15;
+  // LASzip insists that the older fields say the same.
+  point.synthetic_flag = flags & 1;
+  point.keypoint_flag = (flags >> 1) & 1;
+  point.withheld_flag = (flags >> 2) & 1;
   point.extended_scanner_channel = (flags >> 4) & 3;
   point.scan_direction_flag = (flags >> 6) & 1;
   point.edge_of_flight_line = (flags >> 7) & 1;

@@ -156,7 +156,8 @@ void PlyDecoder::decode_columns(const std::byte* rows, std::size_t begin, std::s
   double* ends = rays.ends.data()->data();
   double* starts = rays.starts.data()->data();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double origin = origin_[axis];
+    // Adding -0.0 keeps every bit, where 0.0 would turn -0.0 round.
+    const double origin = origin_[axis] == 0.0 ? -0.0 : origin_[axis];
     each(schema_.end[axis], [=](std::size_t i, auto value) {
       ends[3 * i + axis] = starts[3 * i + axis] = static_cast<double>(value) + origin;
     });

@@ -132,16 +132,30 @@ std::optional<Names> heading_names(std::string_view line) {
   return axes == "xyz" ? std::optional(names) : std::nullopt;
 }
 
-// The numbers of the sample, column by column, and what their spelling tells.
+// How the numbers of a column are written.
+struct Spelling {
+  int decimals = -1;  // of all; kDiffer if they differ or have exponents
+  int digits = 0;     // most significant ones
+};
+constexpr int kDiffer = -2;
+constexpr int kFloatDigits = 9;  // tell every float from every other
+
+// The numbers of the sample, column by column.
 struct Sample {
   std::vector<std::vector<double>> columns;
-  int decimals = -1;  ///< of every x and y; -2 if they differ
+  std::vector<Spelling> spellings;
 };
 
-int decimals_of(std::string_view field) {
-  const std::size_t point = field.find('.');
-  if (field.find_first_of("eE") != std::string_view::npos) return -2;
-  return point == std::string_view::npos ? 0 : static_cast<int>(field.size() - point - 1);
+void note_spelling(Spelling& spelling, std::string_view field) {
+  const std::string_view mantissa = field.substr(0, field.find_first_of("eE"));
+  const std::size_t point = mantissa.find('.');
+  int decimals = point == std::string_view::npos ? 0 : static_cast<int>(mantissa.size() - point - 1);
+  if (mantissa.size() < field.size()) decimals = kDiffer;
+  spelling.decimals = spelling.decimals == -1 || spelling.decimals == decimals ? decimals : kDiffer;
+  const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
+  const auto digits = std::count_if(mantissa.begin() + static_cast<std::ptrdiff_t>(first), mantissa.end(),
+                                    [](char c) { return c >= '0' && c <= '9'; });
+  spelling.digits = std::max(spelling.digits, static_cast<int>(digits));
 }
 
 Sample read_sample(std::string_view rows, char separator) {
@@ -150,13 +164,14 @@ Sample read_sample(std::string_view rows, char separator) {
     const std::string_view line = take_line(rows);
     if (is_blank(line) || is_comment(line)) continue;
     const auto fields = all_fields(line, separator);
-    if (sample.columns.empty()) sample.columns.resize(fields.size());
+    if (sample.columns.empty()) {
+      sample.columns.resize(fields.size());
+      sample.spellings.resize(fields.size());
+    }
     if (fields.size() != sample.columns.size()) break;  // decode names the line
-    for (std::size_t i = 0; i < fields.size(); ++i)
+    for (std::size_t i = 0; i < fields.size(); ++i) {
       sample.columns[i].push_back(number(fields[i]).value_or(std::nan("")));
-    for (std::size_t i = 0; i < std::min<std::size_t>(2, fields.size()); ++i) {
-      const int decimals = decimals_of(fields[i]);
-      sample.decimals = sample.decimals == -1 || sample.decimals == decimals ? decimals : -2;
+      note_spelling(sample.spellings[i], fields[i]);
     }
   }
   return sample;
@@ -255,10 +270,25 @@ std::string joined(const Names& names) {
   return line;
 }
 
+// The precision and the step that the spelling of the coordinates shows: more digits than a float needs are a
+// double's, and decimals that are the same throughout are a step.
+void set_resolution(TextLayout& layout, const Sample& sample) {
+  int digits = 0;
+  int decimals = -1;
+  for (std::size_t i = 0; i < std::min(layout.columns.size(), sample.columns.size()); ++i) {
+    const Role role = layout.columns[i].role;
+    if (role != Role::x && role != Role::y && role != Role::z) continue;
+    digits = std::max(digits, sample.spellings[i].digits);
+    const int here = sample.spellings[i].decimals;
+    if (role != Role::z) decimals = decimals == -1 || decimals == here ? here : kDiffer;
+  }
+  layout.info.precision = digits > kFloatDigits ? Precision::double_ : Precision::single;
+  if (decimals > 0) layout.info.coordinate_step = std::pow(10.0, -decimals);
+}
+
 void set_info(TextLayout& layout, const Sample& sample) {
   CloudInfo& info = layout.info;
-  info.precision = Precision::single;
-  if (sample.decimals > 0) info.coordinate_step = std::pow(10.0, -sample.decimals);
+  set_resolution(layout, sample);
   info.present.starts =
       has_role(layout, Role::start_x) && has_role(layout, Role::start_y) && has_role(layout, Role::start_z);
   info.present.times = has_role(layout, Role::time);

@@ -14,9 +14,9 @@
 /// NAME__low` and `NAME__high`, int if the column is signed, else uint.
 ///
 /// Round trips. Ends, times, colours and extras keep every bit. The end-to-sensor vector of a
-/// single-precision file comes back bit for bit if it is longer than 2^-28 of the start's coordinate (4 µm at
-/// 1 km); otherwise, and in double precision, it is within 2^-51 of the larger coordinate (3 nm at 6900
-/// km), and stays the same from then on.
+/// single-precision file comes back bit for bit, but for the sign of a zero, if it is longer than 2^-28 of
+/// the start's coordinate (4 µm at 1 km); otherwise, and in double precision, it is within 2^-51 of the
+/// larger coordinate (3 nm at 6900 km), and stays the same from then on.
 
 #include <raycloud/core/ray_stream.h>
 #include <raycloud/io/file_options.h>

@@ -10,7 +10,8 @@
 /// fourth is time if it never decreases in the sample read on opening, takes several values and is not a
 /// whole number below 65536 throughout, else intensity; then three whole numbers from 0 to 255 are a colour.
 /// Any other column becomes an extra: `intensity` and what no one names as float64; the integer fields of LAS
-/// (classification, return_number …) as the types LAS gives them. info().comments says what was decided where
+/// (classification, return_number …) as the types LAS gives them. A coordinate of more than 9
+/// significant digits makes info().precision double. info().comments says what was decided where
 /// no heading told.
 
 #include <raycloud/core/ray_stream.h>

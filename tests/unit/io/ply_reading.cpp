@@ -282,6 +282,13 @@ TEST_F(PlyText, BinaryDataMayBeginWithALineEnd) {
   }
 }
 
+TEST_F(PlyText, ZerosKeepTheirSign) {
+  const auto ends = read(header(1) + "-0.0 0.0 -0 0 0 2\n").rays.ends;
+  EXPECT_TRUE(std::signbit(ends[0].x()));
+  EXPECT_FALSE(std::signbit(ends[0].y()));
+  EXPECT_TRUE(std::signbit(ends[0].z()));
+}
+
 TEST_F(PlyText, AFileWithoutRowsIsAnEmptyCloud) {
   EXPECT_TRUE(read(header(0)).rays.empty());
   EXPECT_TRUE(read(header(0).substr(0, header(0).size() - 1)).rays.empty());

@@ -36,13 +36,13 @@ TEST(PointFile, TheExtensionDecidesInEitherCase) {
 
 TEST(RayCloudFile, UnknownExtensionsAreAnsweredWithTheKnown) {
   const Scratch scratch;
-  const auto message = [](const auto& action) {
+  const auto message = [](const auto& action, ErrorCode code = ErrorCode::usage) {
     const auto error = error_of(action);
-    EXPECT_TRUE(error && error->code() == ErrorCode::usage);
+    EXPECT_TRUE(error && error->code() == code);
     return error ? std::string(error->what()) : std::string();
   };
-  EXPECT_EQ(message([] { static_cast<void>(open_ray_cloud("a.pcd")); }),
-            "a.pcd: unknown extension .pcd; known are .ply .las .laz");
+  EXPECT_EQ(message([] { static_cast<void>(open_ray_cloud("a.pcd")); }, ErrorCode::wrong_content),
+            "a.pcd: not a ray cloud (.ply, .las or .laz): make one with rayimport");
   EXPECT_EQ(message([&] { static_cast<void>(create_ray_cloud(scratch.path("a"), {})); }),
             scratch.path("a").string() + ": a file name needs an extension; known are .ply .las .laz");
   EXPECT_THAT(message([] { static_cast<void>(open_points("a.doc")); }),

@@ -135,6 +135,13 @@ TEST(text_points, errors_name_the_line) {
 TEST(text_points, fixed_decimals_are_the_coordinate_step) {
   EXPECT_EQ(read_text("1.125 2.500 3.0\n").info.coordinate_step, 1e-3);
   EXPECT_EQ(read_text("1.1 2.55 3\n").info.coordinate_step, 0.0);
+  EXPECT_EQ(read_text("time x y z\n10.12345 1.1 2.5 3\n").info.coordinate_step, 0.1);
+}
+
+TEST(text_points, more_digits_than_a_float_has_are_a_double) {
+  EXPECT_EQ(read_text("0.00123456789 2 3\n").info.precision, Precision::single);
+  EXPECT_EQ(read_text("time x y z\n1234567890.5 1 2 3\n").info.precision, Precision::single);
+  EXPECT_EQ(read_text("1 500000.1234 3\n").info.precision, Precision::double_);
 }
 
 // Everything but the starts comes back; the types of the extras become those of the reader, the values stay.
