@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
   }
   const auto wanted = static_cast<std::size_t>(std::strtoull(argv[2], nullptr, 10));
   const auto source = ray::open_ray_cloud(argv[1]);
-  const ray::RayCloud cloud = ray::read_all({}, *source);
+  ray::RayCloud cloud = ray::read_all({}, *source);
+  cloud.extras.clear();  // the native row of 36 bytes
   const auto [first, last] = std::minmax_element(cloud.times.begin(), cloud.times.end());
   const double period = *last - *first + 0.01;
   const std::size_t copies = (wanted + cloud.size() - 1) / cloud.size();
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
     ++side;
 
   ray::CloudInfo info = source->info();
+  info.extras.clear();
   info.ray_count = wanted;
   const auto sink = ray::create_ray_cloud(argv[3], info);
   constexpr std::size_t kChunk = 32768;

@@ -10,10 +10,18 @@
 
 namespace ray::tools {
 
+struct Move {
+  Pose pose;
+  Seconds time_shift;
+  /// The most that a move may lose of a coordinate; beyond it the file becomes double. A hundred moves there
+  /// and back must stay within 0.1 mm: rounding repeats itself after a translation (the second trip takes
+  /// every point to where the first did) but wanders for a while after rotations, to some 60 times the loss
+  /// of one.
+  Metres tolerance;
+};
+
 /// Replaces the cloud by the moved one, flushed to the disk first, so that whatever happens one of the two is
-/// there. A move by nothing leaves the file alone. A move keeps 10 µm, finer than the 0.1 mm of a file, so
-/// that a hundred moves there and back stay within that.
-void move_in_place(cli::Session& session, const std::filesystem::path& cloud, const Pose& pose,
-                   Seconds time_shift);
+/// there. A move by nothing leaves the file alone.
+void move_in_place(cli::Session& session, const std::filesystem::path& cloud, const Move& move);
 
 }  // namespace ray::tools

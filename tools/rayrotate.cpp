@@ -17,7 +17,7 @@ direction is the axis, its length the angle in degrees, counter-clockwise seen a
 vector undoes it. The new file replaces the old one only when it is complete and safely on the disk.
 
 A file with coordinates in single precision becomes double where the new coordinates would lose more
-than 10 micrometres.)",
+than 5 micrometres.)",
     .usages = {{.words = {cloud(), vector("RX,RY,RZ")},
                 .help = "by a rotation vector in degrees",
                 .example = "rayrotate cloud.ply 0,0,90"}},
@@ -28,7 +28,8 @@ than 10 micrometres.)",
 
 void run(const Match& match, Session& session) {
   const Eigen::Vector3d rotation_rad = match.vector("RX,RY,RZ") * (std::numbers::pi / 180.0);
-  ray::tools::move_in_place(session, match.text("CLOUD"), ray::rotation_pose(rotation_rad), {});
+  ray::tools::move_in_place(session, match.text("CLOUD"),
+                            {.pose = ray::rotation_pose(rotation_rad), .tolerance = ray::Metres{5e-6}});
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ their times. The file itself is changed: moving by the opposite offset undoes it
 replaces the old one only when it is complete and safely on the disk.
 
 A file with coordinates in single precision becomes double where the new coordinates would lose more
-than 10 micrometres.)",
+than 25 micrometres.)",
     .usages = {{.words = {cloud(), vector("X,Y,Z[,T]")},
                 .help = "by metres along each axis, and seconds",
                 .example = "raytranslate cloud.ply 0,0,-1.5"}},
@@ -26,8 +26,10 @@ than 10 micrometres.)",
 void run(const Match& match, Session& session) {
   const std::vector<double>& components = match.components("X,Y,Z[,T]");
   const ray::Seconds shift{components.size() > 3 ? components[3] : 0.0};
-  ray::tools::move_in_place(session, match.text("CLOUD"), ray::translation_pose(match.vector("X,Y,Z[,T]")),
-                            shift);
+  ray::tools::move_in_place(session, match.text("CLOUD"),
+                            {.pose = ray::translation_pose(match.vector("X,Y,Z[,T]")),
+                             .time_shift = shift,
+                             .tolerance = ray::Metres{25e-6}});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <raycloud/filter/intensity.h>
 #include <raycloud/filter/time_base.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -77,7 +78,26 @@ struct Plan {
   IntensityScale intensity;
   Eigen::Vector3d move = Eigen::Vector3d::Zero();  // added to every position
   bool made_up_times = false;
+  std::vector<std::size_t> left_out;  // extras of the source, in descending order
 };
+
+// The formal extras that the sample shows to be zero throughout: they would only make the cloud larger.
+std::vector<std::size_t> unrecorded_extras(const CloudInfo& info, const SourceSample& sample) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = info.extras.size(); i-- > 0;) {
+    const auto& formal = info.formal_extras;
+    const bool is_formal = std::find(formal.begin(), formal.end(), info.extras[i].name) != formal.end();
+    if (is_formal && sample.recorded[i] == 0) found.push_back(i);
+  }
+  return found;
+}
+
+void leave_out(Plan& plan, const CloudInfo& source, std::vector<std::size_t> extras) {
+  plan.left_out = std::move(extras);
+  plan.info.extras = source.extras;
+  for (const std::size_t i : plan.left_out)
+    plan.info.extras.erase(plan.info.extras.begin() + static_cast<std::ptrdiff_t>(i));
+}
 
 Plan make_plan(const RaySource& points, const SourceSample& sample, const ImportOptions& options,
                const Clock& clock) {
@@ -90,20 +110,33 @@ Plan make_plan(const RaySource& points, const SourceSample& sample, const Import
   if (plan.made_up_times) plan.info.time_base = "made_up";
   if (options.remove_start_position) plan.move = -start_position(options, sample);
   if (!options.history.empty()) plan.info.history.push_back(options.history);
+  leave_out(plan, points.info(), unrecorded_extras(points.info(), sample));
   return plan;
 }
 
 struct Chunk {
   OriginCounts origins;
   IntensityRange intensity;
+  bool lost_values = false;  // an extra that was to be left out is not zero after all
 };
 
 struct Pass {
   StreamCounts counts;
   OriginCounts origins;
   IntensityRange intensity;
+  bool lost_values = false;
   OriginAudit audit;
 };
+
+// Drops the extras of the plan from a chunk; true if one of them holds a value.
+bool drop_extras(const Plan& plan, RayCloud& rays) {
+  bool lost = false;
+  for (const std::size_t i : plan.left_out) {
+    lost = lost || is_recorded(rays.extras[i]);
+    rays.extras.erase(rays.extras.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return lost;
+}
 
 Pass run_pass(const Context& context, RaySource& points, RaySink& sink, const Plan& plan,
               const OriginStep& step, const Clock& clock) {
@@ -115,6 +148,7 @@ Pass run_pass(const Context& context, RaySource& points, RaySink& sink, const Pl
       for (double& time : rays.times)
         time = clock(time);
     Chunk chunk{.intensity = apply_intensity(plan.intensity, rays)};
+    chunk.lost_values = drop_extras(plan, rays);
     chunk.origins = step(rays);
     if (!plan.move.isZero(0.0)) rays.transform(translation_pose(plan.move));
     return chunk;
@@ -125,6 +159,7 @@ Pass run_pass(const Context& context, RaySource& points, RaySink& sink, const Pl
         time = static_cast<double>(row++) * kMadeUpStep;
     pass.origins.add(chunk.origins);
     pass.intensity.add(chunk.intensity);
+    pass.lost_values = pass.lost_values || chunk.lost_values;
     pass.audit.add(rays);
   };
   pass.counts = stream(context, points, &sink, map, fold);
@@ -200,12 +235,14 @@ ImportReport import_rays(const Context& context, RaySource& points, const Import
         throw Error(ErrorCode::no_data,
                     options.points_name + ": no point has a time within " + options.trajectory_name);
       const IntensityScale whole = intensity_scale(points.info(), pass.intensity, options.max_intensity);
-      if (same_scale(plan.intensity, whole)) {
+      if (same_scale(plan.intensity, whole) && !pass.lost_values) {
         plan.intensity.reason = whole.reason;
         sink->finish();
         return report_of(context, pass, plan, options);
       }
-      plan.intensity = whole;  // the sample misled: once more, now knowing the whole range
+      // The sample misled: once more, now knowing better.
+      plan.intensity = whole;
+      if (pass.lost_values) leave_out(plan, points.info(), {});
     } catch (const PrecisionLoss&) {
       if (plan.info.precision == Precision::double_) throw;
       plan.info.precision = Precision::double_;

@@ -2,6 +2,8 @@
 
 #include <raycloud/exec/parallel.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 namespace ray {
@@ -48,11 +50,18 @@ SourceSample look_at(const RaySource& source, const RawChunk& raw, const std::st
   for (const double time : rays.times)
     part.times.add(time);
   part.intensity = intensity_range(rays, intensity);
+  for (const Column& column : rays.extras)
+    part.recorded.push_back(is_recorded(column) ? 1 : 0);
   if (!rays.empty()) part.first_start = rays.starts.front();
   return part;
 }
 
 }  // namespace
+
+bool is_recorded(const Column& column) {
+  const std::span bytes(column.data(), column.size() * column.stride());
+  return std::any_of(bytes.begin(), bytes.end(), [](std::byte b) { return b != std::byte{0}; });
+}
 
 SourceSample sample_source(const Context& context, RaySource& source, const std::string& intensity) {
   source.rewind();
@@ -64,11 +73,14 @@ SourceSample sample_source(const Context& context, RaySource& source, const std:
       parts[i] = look_at(source, picked.chunks[i], intensity);
   });
   SourceSample sample;
+  sample.recorded.resize(source.info().extras.size());
   sample.complete = picked.fetched == picked.chunks.size();
   for (const SourceSample& part : parts) {
     sample.rays += part.rays;
     sample.invalid += part.invalid;
     sample.intensity.add(part.intensity);
+    for (std::size_t i = 0; i < part.recorded.size(); ++i)
+      sample.recorded[i] |= part.recorded[i];
     if (!part.times.empty()) {
       sample.times.add(part.times.first);
       sample.times.add(part.times.last);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ray {
 
@@ -19,8 +20,12 @@ struct SourceSample {
   bool complete = false;  ///< every chunk was looked at
   TimeSpan times;
   IntensityRange intensity;
+  std::vector<std::uint8_t> recorded;  ///< for each extra column: 1 if a value is not zero
   std::optional<Eigen::Vector3d> first_start;
 };
+
+/// Whether a value of the column is not zero.
+[[nodiscard]] bool is_recorded(const Column& column);
 
 /// Fetches all and decodes at most 9 chunks, the first and the last among them, evenly spread; leaves the
 /// source rewound. Deterministic. `intensity` is the name of a column, empty for none.

@@ -16,7 +16,7 @@ constexpr double kSkippedAtStart = 0.5;      // m
 constexpr double kSkippedAtEnd = 1.0;        // m, or the share below of the length
 constexpr double kSkippedShare = 0.05;
 constexpr double kLongestWalk = 100.0;  // m
-constexpr double kFar = 1e15;  // cubes; beyond, a point only has to be in some cube
+constexpr double kFar = 1e15;           // cubes; beyond, a point only has to be in some cube
 constexpr std::size_t kFilterWords = std::size_t{1} << 15;
 
 std::uint64_t cube_key(const Eigen::Vector3d& point) {

@@ -60,7 +60,7 @@ void write_png(const std::filesystem::path& path, const Image& image, const Writ
                                              " pixels cannot be written: a side has 1 to 20000");
   }
   static_assert(sizeof(Pixel) == 4);
-  Output output{AtomicFile(path), nullptr};
+  Output output{AtomicFile(path, options), nullptr};
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
   int done = 0;
   try {
@@ -72,7 +72,7 @@ void write_png(const std::filesystem::path& path, const Image& image, const Writ
   if (done == 0) {
     throw Error(ErrorCode::out_of_range, path.string() + ": not enough memory to compress the image");
   }
-  output.file.commit(options);
+  output.file.commit();
 }
 
 }  // namespace ray

@@ -138,8 +138,12 @@ LasDecoder::LasDecoder(const LasHeader& header)
     for (auto& field : {x, y, z})
       if (field) extra.push_back(*field);
   columns_ = las_columns(header, extra);
-  for (const LasColumn& column : columns_)
+  for (const LasColumn& column : columns_) {
     info_.extras.push_back(column.info);
+    // A file of this project names its columns; any other has these because its point format does.
+    if (!header.notes.there && column.at < las_format_length(header.format))
+      info_.formal_extras.push_back(column.info.name);
+  }
   // The finest: of a file in degrees the heights would give a step that is far too coarse for the rest.
   info_.coordinate_step = std::abs(*std::min_element(
       scale_.begin(), scale_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));

@@ -122,12 +122,7 @@ class LasSink final : public RaySink {
  public:
   LasSink(const std::filesystem::path& path, const CloudInfo& info, const LasContent& content,
           const WriteOptions& options)
-      : file_(path),
-        spool_(path),
-        info_(info),
-        content_(content),
-        options_(options),
-        compressed_(is_laz(path)) {}
+      : file_(path, options), spool_(path), info_(info), content_(content), compressed_(is_laz(path)) {}
 
   void encode(const RayCloud& rays, RawChunk& raw) const override;
   void write(const RawChunk& raw) override;
@@ -144,7 +139,6 @@ class LasSink final : public RaySink {
   LasSpool spool_;
   CloudInfo info_;
   LasContent content_;
-  WriteOptions options_;
   bool compressed_;
   LasSurvey survey_;
 };
@@ -239,7 +233,7 @@ void LasSink::finish() {
   file_.write(records.bytes);
   write_points(encoder, writer.get());
   writer.reset();
-  file_.commit(options_);
+  file_.commit();
 }
 
 }  // namespace

@@ -73,8 +73,8 @@ class PlainRecords final : public LasRecords {
   }
 
   [[noreturn]] void fail(std::uint64_t good) const {
-    throw Error(ErrorCode::file_format, input_->path().string() + ": cut short after point " + std::to_string(good) +
-                                            " of " + std::to_string(point_count_));
+    throw Error(ErrorCode::file_format, input_->path().string() + ": cut short after point " +
+                                            std::to_string(good) + " of " + std::to_string(point_count_));
   }
 
   Input input_;
@@ -233,7 +233,11 @@ std::vector<LasExtraField> upgraded_fields(const LasHeader& header, const LazRea
 std::unique_ptr<LazReader> open_reader(const InputFile& input, LasHeader& header) {
   const std::uint32_t chunk_rows = laz_chunk_rows(header);
   const bool replaceable = chunk_rows != 0 && chunk_rows != kVariableChunk;
-  header.chunk_table_lost = replaceable && !laz_tabled_chunks(input, header);
+  const bool lost = chunk_rows != 0 && !laz_tabled_chunks(input, header);
+  if (lost && !replaceable)
+    throw Error(ErrorCode::file_format,
+                input.path().string() + ": cut short or damaged: LASzip's table of chunks is lost");
+  header.chunk_table_lost = lost;
   auto reader = std::make_unique<LazReader>(input, header);
   std::vector<std::byte> record(reader->record_length());
   try {
@@ -249,9 +253,6 @@ std::unique_ptr<LazReader> open_reader(const InputFile& input, LasHeader& header
 std::unique_ptr<RaySource> open_compressed(Input input, LasHeader header, const ReadOptions& options) {
   std::unique_ptr<LazReader> reader = open_reader(*input, header);
   LasHeader given = header;
-  if (reader->format() < 0 || reader->format() > 10 ||
-      reader->record_length() < las_format_length(reader->format()))
-    throw Error(ErrorCode::file_format, input->path().string() + ": LASzip sees points that no LAS file has");
   if (reader->format() != header.format || reader->record_length() != header.record_length) {
     given.format = reader->format();
     given.record_length = reader->record_length();

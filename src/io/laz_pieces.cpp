@@ -60,7 +60,10 @@ std::optional<std::uint64_t> laz_tabled_chunks(const InputFile& input, const Las
       at > static_cast<std::int64_t>(input.size() - 8))
     return std::nullopt;
   input.read_at(static_cast<std::uint64_t>(at), bytes);
-  return load<std::uint32_t>(bytes.data() + 4);
+  const auto count = load<std::uint32_t>(bytes.data() + 4);
+  // Every chunk starts with a whole point. LASzip would believe any number, and take memory for it.
+  if (count > input.size() / las_format_length(0)) return std::nullopt;
+  return count;
 }
 
 LazPieces::LazPieces(const InputFile& input, const LasHeader& header, std::size_t chunk_rays)

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kVlrHead = 54;
 constexpr std::size_t kCompressorAt = 0;
+constexpr std::size_t kCoderAt = 2;
 constexpr std::size_t kChunkRowsAt = 12;
 constexpr std::size_t kItemCountAt = 32;
 constexpr std::size_t kItemsAt = 34;
@@ -123,7 +124,8 @@ class LazReader::Stream : private std::streambuf {
 std::uint32_t laz_chunk_rows(const LasHeader& header) {
   const std::byte* record = header.laszip_record.data();
   if (header.laszip_record.size() < kItemsAt || load<std::uint16_t>(record + kCompressorAt) < 2) return 0;
-  return load<std::uint32_t>(record + kChunkRowsAt);
+  const auto rows = load<std::uint32_t>(record + kChunkRowsAt);
+  return rows == 0 ? kVariableChunk : rows;
 }
 
 void check_laszip_record(const InputFile& input, const LasHeader& header) {
@@ -145,9 +147,15 @@ void check_laszip_record(const InputFile& input, const LasHeader& header) {
     const bool first = type == 6 || type == 10;
     require(type < kSizes.size() && (kSizes[type] == 0 || kSizes[type] == size) && first == (i == 0));
     require((type == 6) == (header.format < 6) || !first);
+    // What LASzip 3 knows; refusing the rest itself, it forgets some memory.
+    const auto version = load<std::uint16_t>(item + 4);
+    require(type < 10 ? type >= 6 || type == 0 : version >= 2);
+    require(version >= 1 && version <= (type == 9 ? 1 : type < 10 ? 2 : 4));
     length += size;
   }
-  require(length == header.record_length && load<std::uint16_t>(record.data() + kCompressorAt) <= 3);
+  const auto compressor = load<std::uint16_t>(record.data() + kCompressorAt);
+  require(length == header.record_length && compressor >= 1 && compressor <= 3);
+  require(load<std::uint16_t>(record.data() + kCoderAt) == 0 && (compressor == 3) == (header.format >= 6));
   std::size_t head = header.block.size() + kVlrHead + record.size();
   if (!header.compatibility_record.empty())
     head += 2 * kVlrHead + header.compatibility_record.size() + header.extra_bytes_record.size();
@@ -172,7 +180,14 @@ LazReader::LazReader(const InputFile& input, const LasHeader& header, LazFields 
   }
   format_ = seen->point_data_format;
   record_length_ = seen->point_data_record_length;
+  if (format_ > 10 || record_length_ < las_format_length(format_)) {
+    laszip_destroy(laszip_);
+    throw Error(ErrorCode::file_format, name_ + ": LASzip sees points that no LAS file has");
+  }
   ahead_.resize(record_length_);
+  standard_length_ = las_format_length(format_);
+  times_at_ = las_times_at(format_);
+  colours_at_ = las_colours_at(format_);
 }
 
 LazReader::~LazReader() {
@@ -254,11 +269,9 @@ void LazReader::pack(std::byte* record) const {
     store(record + 17, point.user_data);
     store(record + 18, point.point_source_ID);
   }
-  if (const std::size_t at = las_times_at(format_); at != 0) store(record + at, point.gps_time);
-  const bool infrared = format_ == 8 || format_ == 10;
-  if (const std::size_t at = las_colours_at(format_); at != 0)
-    std::memcpy(record + at, point.rgb, infrared ? 8 : 6);
-  const std::size_t standard = las_format_length(format_);
+  if (times_at_ != 0) store(record + times_at_, point.gps_time);
+  if (colours_at_ != 0) std::memcpy(record + colours_at_, point.rgb, format_ == 8 || format_ == 10 ? 8 : 6);
+  const std::size_t standard = standard_length_;
   if (format_ == 4 || format_ == 5 || format_ >= 9)
     std::memcpy(record + standard - 29, point.wave_packet, 29);
   const std::size_t extra = record_length_ - standard;

@@ -51,6 +51,9 @@ class LazReader {
   std::uint32_t chunk_rows_;
   int format_ = 0;
   std::size_t record_length_ = 0;
+  std::size_t standard_length_ = 0;  ///< of the record, without extra bytes
+  std::size_t times_at_ = 0;         ///< byte in the record, 0 where there are none
+  std::size_t colours_at_ = 0;
   std::unique_ptr<Stream> stream_;
   void* laszip_ = nullptr;
   laszip_point_struct* point_ = nullptr;

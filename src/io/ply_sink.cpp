@@ -178,8 +178,7 @@ class PlySink final : public RaySink {
       : layout_(path, info, rays),
         rays_(rays),
         single_(info.precision == Precision::single),
-        options_(options),
-        file_(path) {
+        file_(path, options) {
     if (!file_.seekable()) {
       throw Error(ErrorCode::file_access, path.string() +
                                               ": a PLY file cannot be written to a pipe, as its "
@@ -225,7 +224,7 @@ class PlySink final : public RaySink {
       throw Error(ErrorCode::out_of_range, file_.path().string() + ": more than 10^12 rays");
     }
     file_.write_at(layout_.count_offset() + kCountDigits - count.size(), count);
-    file_.commit(options_);
+    file_.commit();
   }
 
  private:
@@ -272,7 +271,6 @@ class PlySink final : public RaySink {
   bool single_;
   double tolerance_ = 0.0;  // m
   double safe_ = std::numeric_limits<double>::max();
-  WriteOptions options_;
   AtomicFile file_;
   std::uint64_t rows_ = 0;
 };

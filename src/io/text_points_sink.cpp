@@ -24,8 +24,7 @@ void append(std::string& text, const Column& column, std::size_t row) {
 class TextSink final : public RaySink {
  public:
   TextSink(const std::filesystem::path& path, const CloudInfo& info, const WriteOptions& options)
-      : file_(path),
-        options_(options),
+      : file_(path, options),
         separator_(path.extension() == ".csv" || path.extension() == ".CSV" ? ',' : ' '),
         single_(info.precision == Precision::single) {
     std::string heading;
@@ -47,7 +46,7 @@ class TextSink final : public RaySink {
   }
 
   void write(const RawChunk& raw) override { file_.write(raw.bytes); }
-  void finish() override { file_.commit(options_); }
+  void finish() override { file_.commit(); }
 
  private:
   void append_coordinate(std::string& text, double value) const {
@@ -74,7 +73,6 @@ class TextSink final : public RaySink {
   }
 
   AtomicFile file_;
-  WriteOptions options_;
   char separator_;
   bool single_;
 };

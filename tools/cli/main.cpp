@@ -72,6 +72,8 @@ int run_command(const Command& command, Run run, const std::vector<std::string>&
   Session session(command, match);
   try {
     run(match, session);
+  } catch (const UsageError&) {
+    throw;  // as it is: a copy as Error would lose the caret
   } catch (const Error& error) {
     throw about_input(error, match);
   }

@@ -27,8 +27,11 @@ struct CloudInfo {
   Precision precision = Precision::single;
   double coordinate_step = 0.0;    ///< m; the source's own resolution (the scale of a LAS file), 0 if unknown
   std::vector<ColumnInfo> extras;  ///< schema of RayCloud::extras in every chunk
-  std::string crs;                 ///< WKT or "EPSG:n", on one line; empty if unknown
-  std::string time_base;           ///< "gps_week", "gps_adjusted", "made_up"; empty if unknown
+  /// Names of extras that the source's format has whether they were recorded or not; zeros throughout mean
+  /// not.
+  std::vector<std::string> formal_extras;
+  std::string crs;                    ///< WKT or "EPSG:n", on one line; empty if unknown
+  std::string time_base;              ///< "gps_week", "gps_adjusted", "made_up"; empty if unknown
   std::vector<std::string> history;   ///< one line a command, oldest first, without file names
   std::vector<std::string> comments;  ///< every other comment of the source, kept as it is
   Present present;

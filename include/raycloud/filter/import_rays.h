@@ -48,8 +48,9 @@ using SinkMaker = std::function<std::unique_ptr<RaySink>(const CloudInfo&)>;
 /// trajectory. Calls `finish` on the last sink. Points without times get made-up ones (a microsecond apart,
 /// in file order) and info.time_base "made_up".
 ///
-/// Precision is that of the source where that is double; else single, and double from the start if
-/// PrecisionLoss stops the first try.
+/// Extra columns that the format of the source has in any case (info().formal_extras) and that are zero
+/// throughout are left out. Precision is that of the source where that is double; else single, and double
+/// from the start if PrecisionLoss stops the first try.
 [[nodiscard]] ImportReport import_rays(const Context& context, RaySource& points,
                                        const ImportOptions& options, const SinkMaker& make_sink);
 

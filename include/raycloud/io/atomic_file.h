@@ -23,7 +23,7 @@ namespace ray {
 class AtomicFile {
  public:
   /// Throws if the folder is missing or cannot be written, or the target is a folder or write-protected.
-  explicit AtomicFile(std::filesystem::path target);
+  explicit AtomicFile(std::filesystem::path target, const WriteOptions& options = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -44,19 +44,22 @@ class AtomicFile {
   /// The name given to the constructor.
   [[nodiscard]] const std::filesystem::path& path() const { return target_; }
 
-  /// Flushes if asked, closes, and renames onto the target. Call once, after the last write.
-  void commit(const WriteOptions& options = {});
+  /// Flushes if the options say so, closes, and renames onto the target. Call once, after the last write.
+  void commit();
 
  private:
   void open_temporary(const std::filesystem::path& real);
+  void start_flush();
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path target_;
+  WriteOptions options_;
   std::filesystem::path real_;       ///< the target with symbolic links resolved; empty if written directly
   std::filesystem::path temporary_;  ///< empty if there is nothing to remove
   int descriptor_ = -1;
   bool seekable_ = true;
   std::uint64_t size_ = 0;
+  std::uint64_t flushing_ = 0;  ///< bytes that are on their way to the disk
 };
 
 }  // namespace ray

@@ -43,14 +43,14 @@ class AtomicFileTest : public ::testing::Test {
 TEST_F(AtomicFileTest, AppearsOnCommitOnly) {
   const auto target = scratch_.path("out.txt");
   write_file(target, "old");
-  AtomicFile file(target);
+  AtomicFile file(target, {.flush_to_disk = true});
   file.write("hello ");
   file.write("world");
   file.write_at(0, "J");
   EXPECT_EQ(file.size(), 11u);
   EXPECT_EQ(read_file(target), "old");
   EXPECT_EQ(files_in(scratch_.folder()), 2u);
-  file.commit({.flush_to_disk = true});
+  file.commit();
   EXPECT_EQ(read_file(target), "Jello world");
   EXPECT_EQ(files_in(scratch_.folder()), 1u);
 }

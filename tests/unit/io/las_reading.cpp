@@ -265,6 +265,9 @@ TEST(LasReading, ExtraBytesOfEveryType) {
   EXPECT_EQ(value<std::uint16_t>(rays, "no_data", 1), 78);
   EXPECT_EQ(value<std::uint8_t>(rays, "extra_byte_0", 1), 3);
   EXPECT_EQ(value<std::uint8_t>(rays, "extra_byte_1", 1), 4);
+  EXPECT_THAT(open_las_points(scratch.path("a.las"))->info().formal_extras,
+              ElementsAre("intensity", "return_number", "number_of_returns", "classification", "flags",
+                          "scan_angle", "user_data", "point_source_id"));
 }
 
 TEST(LasReading, OriginsByTheNamesOfPdalMakeRays) {

@@ -193,6 +193,7 @@ TEST(LasWriting, NotesComeBack) {
     EXPECT_EQ(back.time_base, info.time_base);
     EXPECT_EQ(back.history, info.history);
     EXPECT_EQ(back.comments, info.comments);
+    EXPECT_TRUE(back.formal_extras.empty());
     EXPECT_TRUE(back.present.starts && back.present.times && back.present.colours && back.present.intensity);
     EXPECT_TRUE(plain_loop(scratch.path("a.laz")).whole);
   }
