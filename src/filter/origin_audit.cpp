@@ -53,24 +53,33 @@ std::string line(const char* format, Numbers... numbers) {
 OriginAudit::OriginAudit() : lengths_(kBins, 0), random_(0, "origin audit") {}
 
 void OriginAudit::add(const RayCloud& rays) {
+  if (rays.empty()) return;
+  if (count_ == 0) {
+    first_start_ = anchor_ = rays.starts.front();
+    first_end_ = rays.ends.front();
+    anchor_time_ = rays.times.front();
+  }
+  add_sameness(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Eigen::Vector3d& start = rays.starts[i];
-    const Eigen::Vector3d& end = rays.ends[i];
-    if (count_ == 0) {
-      first_start_ = anchor_ = start;
-      first_end_ = end;
-      anchor_time_ = rays.times[i];
-    }
-    const Eigen::Vector3d vector = end - start;
-    one_start_ = one_start_ && start == first_start_;
-    one_vector_ =
-        one_vector_ && (vector - (first_end_ - first_start_)).squaredNorm() < kSameVector * kSameVector;
-    first_time_ = std::min(first_time_, rays.times[i]);
-    last_time_ = std::max(last_time_, rays.times[i]);
-    add_length(vector.squaredNorm(), rays.bounded[i] != 0);
-    add_step(rays.times[i], start);
-    add_sample(rays, i);
-    ++count_;
+    add_length((rays.ends[i] - rays.starts[i]).squaredNorm(), rays.bounded[i] != 0);
+    add_step(rays.times[i], rays.starts[i]);
+  }
+  for (; next_sampled_ < count_ + rays.size(); next_sampled_ = sampled_of(++block_))
+    add_sample(rays, next_sampled_ - count_);
+  count_ += rays.size();
+}
+
+// Stops looking at the first difference, which for most clouds is their second ray.
+void OriginAudit::add_sameness(const RayCloud& rays) {
+  const auto [earliest, latest] = std::minmax_element(rays.times.begin(), rays.times.end());
+  first_time_ = std::min(first_time_, *earliest);
+  last_time_ = std::max(last_time_, *latest);
+  const Eigen::Vector3d first_vector = first_end_ - first_start_;
+  for (std::size_t i = 0; i < rays.size() && one_start_; ++i)
+    one_start_ = rays.starts[i] == first_start_;
+  for (std::size_t i = 0; i < rays.size() && one_vector_; ++i) {
+    const Eigen::Vector3d vector = rays.ends[i] - rays.starts[i];
+    one_vector_ = (vector - first_vector).squaredNorm() < kSameVector * kSameVector;
   }
 }
 
@@ -96,14 +105,26 @@ void OriginAudit::add_step(double time, const Eigen::Vector3d& start) {
   step_duration_ *= 2.0;
 }
 
+// Of two neighbouring blocks of 2^(level-1) rays, the sampled ray of which one is that of both.
+bool OriginAudit::takes_second(std::uint64_t block, unsigned level) const {
+  return (random_.bits(block, level) & 1) != 0;
+}
+
+std::uint64_t OriginAudit::sampled_of(std::uint64_t block) const {
+  for (unsigned level = level_; level > 0; --level)
+    block = 2 * block + (takes_second(block, level) ? 1 : 0);
+  return block;
+}
+
 void OriginAudit::add_sample(const RayCloud& rays, std::size_t i) {
-  const std::uint64_t key = random_.bits(count_);
-  if (key > threshold_) return;
-  sample_.push_back({key, rays.times[i], (rays.starts[i] - first_end_).cast<float>(),
+  sample_.push_back({random_.bits(next_sampled_), rays.times[i], (rays.starts[i] - first_end_).cast<float>(),
                      (rays.ends[i] - first_end_).cast<float>(), rays.bounded[i] != 0});
   if (sample_.size() < kMostSampled) return;
-  threshold_ /= 2;
-  std::erase_if(sample_, [&](const Sampled& ray) { return ray.key > threshold_; });
+  ++level_;
+  for (std::size_t pair = 0; 2 * pair < sample_.size(); ++pair)
+    sample_[pair] = sample_[2 * pair + (takes_second(pair, level_) ? 1 : 0)];
+  sample_.resize(kMostSampled / 2);
+  block_ = sample_.size() - 1;
 }
 
 OriginFindings OriginAudit::findings(const Context& context, const AuditOptions& options) const {
@@ -211,15 +232,19 @@ std::vector<Move> moves_to_try(double speed) {
 class Walk {
  public:
   Walk(const Context& context, std::vector<OriginAudit::Sampled> sample)
-      : context_(context), by_time_(std::move(sample)), patches_(bounded_ends(by_time_)) {
+      : context_(context), by_time_(std::move(sample)), patches_(context, bounded_ends(by_time_)) {
     std::vector<OriginAudit::Sampled> by_key = by_time_;
     std::erase_if(by_key,
                   [](const auto& ray) { return !ray.bounded || (ray.end - ray.start).norm() < 2.0f; });
-    std::sort(by_key.begin(), by_key.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
-    by_key.resize(std::min(by_key.size(), kMostWalked));
+    const auto smaller_key = [](const auto& a, const auto& b) { return a.key < b.key; };
+    const std::size_t walked = std::min(by_key.size(), kMostWalked);
+    const auto end = by_key.begin() + static_cast<std::ptrdiff_t>(walked);
+    std::nth_element(by_key.begin(), end, by_key.end(), smaller_key);
+    std::sort(by_key.begin(), end, smaller_key);
+    by_key.resize(walked);
     walked_ = std::move(by_key);
-    std::stable_sort(by_time_.begin(), by_time_.end(),
-                     [](const auto& a, const auto& b) { return a.time < b.time; });
+    parallel_sort(context, by_time_.begin(), by_time_.end(),
+                  [](const auto& a, const auto& b) { return a.time < b.time; });
   }
 
   [[nodiscard]] std::size_t walked() const { return walked_.size(); }

@@ -44,6 +44,8 @@ OriginCounts OriginStep::follow(const MovingSensor& sensor, RayCloud& rays) cons
   OriginCounts counts;
   std::vector<std::uint8_t> kept(rays.size(), 1);
   TrajectorySpot spot;
+  double from = 0.0;  // the segment of the last ray, which nearly always is that of the next
+  double to = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const double time = rays.times[i];
     const bool before = time < path.times.front() - spacing_;
@@ -54,11 +56,18 @@ OriginCounts OriginStep::follow(const MovingSensor& sensor, RayCloud& rays) cons
       kept[i] = 0;
       continue;
     }
-    spot = spot_at(path, time, spot.node);
+    if (time >= from && time < to) {
+      spot.fraction = (time - from) / (to - from);
+    } else {
+      spot = spot_at(path, time, spot.node);
+      const bool inside = spot.node + 1 < path.size() && time >= path.times[spot.node];
+      from = path.times[spot.node];
+      to = inside ? path.times[spot.node + 1] : from;
+    }
     rays.starts[i] = position_at(path, spot);
     if (sensor.lever_arm) rays.starts[i] += orientation_at(path, spot) * *sensor.lever_arm;
     if (spot.fraction > 0.0) {
-      const double gap = path.times[spot.node + 1] - path.times[spot.node];
+      const double gap = to - from;
       if (gap > kGapSpacings * spacing_) {
         ++counts.in_gaps;
         counts.longest_gap = std::max(counts.longest_gap, gap);

@@ -1,5 +1,7 @@
 #include "surface_crossings.h"
 
+#include <raycloud/exec/parallel.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -8,7 +10,7 @@ namespace ray {
 namespace {
 
 constexpr double kCube = 0.25;  // m
-constexpr int kFewestEnds = 6;
+constexpr std::size_t kFewestEnds = 6;
 constexpr double kThickest = 0.1 * kCube;    // standard deviation across a patch
 constexpr double kNarrowest = 0.12 * kCube;  // and along its shorter side
 constexpr double kSteep = 0.3;               // least cosine between ray and normal
@@ -31,34 +33,62 @@ std::uint64_t hash_of(std::uint64_t key) {
   return key * 0x9E3779B97F4A7C15u >> 40;
 }
 
-struct Moments {
-  int count = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+struct KeyedEnd {
+  std::uint64_t key;
+  std::uint32_t index;
 };
 
 }  // namespace
 
-SurfacePatches::SurfacePatches(std::span<const Eigen::Vector3d> ends) : filter_(kFilterWords, 0) {
-  std::unordered_map<std::uint64_t, Moments> cubes;
-  cubes.reserve(ends.size() / 4);
-  for (const Eigen::Vector3d& end : ends) {
-    Moments& moments = cubes[cube_key(end)];
-    ++moments.count;
-    moments.sum += end;
-    moments.squares += end * end.transpose();
-  }
-  for (const auto& [key, moments] : cubes) {
-    if (moments.count < kFewestEnds) continue;
-    const Eigen::Vector3d centre = moments.sum / moments.count;
-    const Eigen::Matrix3d covariance = moments.squares / moments.count - centre * centre.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-    const Eigen::Vector3d variances = solver.eigenvalues().cwiseMax(0.0);
-    if (variances[0] > kThickest * kThickest || variances[1] < kNarrowest * kNarrowest) continue;
-    patches_.emplace(key, Patch{centre, solver.eigenvectors().col(0), 2.25 * variances[1]});
+SurfacePatches::SurfacePatches(const Context& context, std::span<const Eigen::Vector3d> ends)
+    : filter_(kFilterWords, 0) {
+  constexpr std::size_t kGrain = 4096;
+  std::vector<KeyedEnd> keyed(ends.size());
+  parallel_for(context, ends.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      keyed[i] = {cube_key(ends[i]), static_cast<std::uint32_t>(i)};
+  });
+  parallel_sort(context, keyed.begin(), keyed.end(),
+                [](const KeyedEnd& a, const KeyedEnd& b) { return a.key < b.key; });
+  std::vector<std::size_t> firsts;  // of the ends of each cube
+  for (std::size_t i = 0; i < keyed.size(); ++i)
+    if (i == 0 || keyed[i].key != keyed[i - 1].key) firsts.push_back(i);
+  firsts.push_back(keyed.size());
+
+  std::vector<std::optional<Patch>> fitted(firsts.size() - 1);
+  parallel_for(context, fitted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Eigen::Vector3d> cube;
+    for (std::size_t i = begin; i < end; ++i) {
+      cube.clear();
+      for (std::size_t j = firsts[i]; j < firsts[i + 1]; ++j)
+        cube.push_back(ends[keyed[j].index]);
+      fitted[i] = fit(cube);
+    }
+  });
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (!fitted[i]) continue;
+    const std::uint64_t key = keyed[firsts[i]].key;
+    patches_.emplace(key, *fitted[i]);
     const std::uint64_t hash = hash_of(key);
     filter_[(hash >> 6) % kFilterWords] |= std::uint64_t{1} << (hash & 63);
   }
+}
+
+std::optional<SurfacePatches::Patch> SurfacePatches::fit(std::span<const Eigen::Vector3d> ends) {
+  if (ends.size() < kFewestEnds) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& end : ends) {
+    sum += end;
+    squares += end * end.transpose();
+  }
+  const auto count = static_cast<double>(ends.size());
+  const Eigen::Vector3d centre = sum / count;
+  const Eigen::Matrix3d covariance = squares / count - centre * centre.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const Eigen::Vector3d variances = solver.eigenvalues().cwiseMax(0.0);
+  if (variances[0] > kThickest * kThickest || variances[1] < kNarrowest * kNarrowest) return std::nullopt;
+  return Patch{centre, solver.eigenvectors().col(0), 2.25 * variances[1]};
 }
 
 bool SurfacePatches::blocks(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const {

@@ -31,7 +31,7 @@ struct OriginFindings {
 };
 
 /// Goes over a cloud once, in file order, and keeps a bounded summary: a histogram of lengths, the steps of
-/// the path and a hashed sample of the rays. About 25 ns a ray; memory ≤ 30 MB. The answer depends neither on
+/// the path and an even sample of the rays. About 10 ns a ray; memory ≤ 30 MB. The answer depends neither on
 /// how the cloud is cut into chunks nor on threads.
 ///
 /// The test for shifted origins fits flat patches to the sampled ends in 0.25 m cubes and counts the rays
@@ -61,8 +61,11 @@ class OriginAudit {
     float length;
     float duration;
   };
+  void add_sameness(const RayCloud& rays);
   void add_length(double squared, bool bounded);
   void add_step(double time, const Eigen::Vector3d& start);
+  [[nodiscard]] bool takes_second(std::uint64_t block, unsigned level) const;
+  [[nodiscard]] std::uint64_t sampled_of(std::uint64_t block) const;
   void add_sample(const RayCloud& rays, std::size_t i);
   void judge_lengths(OriginFindings& result) const;
   void judge_path(OriginFindings& result, const AuditOptions& options) const;
@@ -84,8 +87,11 @@ class OriginAudit {
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
 
   RandomStream random_;
+  // One ray of each block of 2^level_ rays, chosen so that of two blocks that are joined one choice remains.
   std::vector<Sampled> sample_;
-  std::uint64_t threshold_ = std::numeric_limits<std::uint64_t>::max();
+  unsigned level_ = 0;
+  std::uint64_t block_ = 0;         // the next to be sampled
+  std::uint64_t next_sampled_ = 0;  // its ray, by number
 };
 
 }  // namespace ray
