@@ -69,6 +69,7 @@ IntensityScale intensity_scale(const CloudInfo& info, const IntensityRange& rang
     scale.reason = "all rays are bounded, as --max_intensity 0 asks";
     return scale;
   }
+  if (info.present.intensity && !max_intensity) return {};
   if (scale.column.empty()) {
     scale.reason = info.present.intensity ? "" : "no intensity: all rays are bounded";
     return scale;

@@ -218,6 +218,9 @@ std::size_t LasDecoder::decode(std::span<const std::byte> records, bool wide_col
     for_each_record(records, record_length_, [&](std::size_t row, const std::byte* record) {
       rays.bounded[row] = scaled_value(*bounded_, record) != 0.0 ? 1 : 0;
     });
+  else if (alpha_)
+    for (std::size_t row = 0; row < rays.size(); ++row)
+      rays.bounded[row] = rays.colours[row].intensity != 0 ? 1 : 0;
   for (std::size_t i = 0; i < columns_.size(); ++i)
     decode_column(records, record_length_, columns_[i], rays.extras[i]);
   return drop_invalid(rays);

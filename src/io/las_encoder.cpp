@@ -184,6 +184,13 @@ void LasEncoder::encode(const RayCloud& rays, std::vector<std::byte>& records) c
     encode_column(rays.extras[i], places_[i], records.data());
 }
 
+/// Among points without `Bounded`, as in PLY, 0 says that a ray is unbounded.
+std::uint8_t LasEncoder::alpha_of(const RayCloud& rays, std::size_t row) const {
+  const std::uint8_t intensity = rays.colours[row].intensity;
+  if (content_.starts) return intensity;
+  return rays.bounded[row] == 0 ? std::uint8_t{0} : std::max<std::uint8_t>(intensity, 1);
+}
+
 void LasEncoder::encode_rays(const RayCloud& rays, std::byte* records) const {
   const std::size_t length = record_length_;
   put_points(rays.ends, ends_, length, records);
@@ -192,7 +199,7 @@ void LasEncoder::encode_rays(const RayCloud& rays, std::byte* records) const {
   put(rays, length, records + 22, [&](std::size_t row) { return rays.times[row]; });
   if (intensity_of_alpha_)
     put(rays, length, records + 12,
-        [&](std::size_t row) { return static_cast<std::uint16_t>(257 * rays.colours[row].intensity); });
+        [&](std::size_t row) { return static_cast<std::uint16_t>(257 * alpha_of(rays, row)); });
   if (content_.colours)
     put(rays, length, records + 30, [&](std::size_t row) {
       const Colour& colour = rays.colours[row];
@@ -204,7 +211,7 @@ void LasEncoder::encode_rays(const RayCloud& rays, std::byte* records) const {
     put(rays, length, records + bounded_at_, [&](std::size_t row) { return rays.bounded[row]; });
   }
   if (content_.alpha)
-    put(rays, length, records + alpha_at_, [&](std::size_t row) { return rays.colours[row].intensity; });
+    put(rays, length, records + alpha_at_, [&](std::size_t row) { return alpha_of(rays, row); });
 }
 
 void LasEncoder::encode_column(const Column& column, const Place& place, std::byte* records) const {

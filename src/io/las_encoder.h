@@ -74,6 +74,7 @@ class LasEncoder {
   };
 
   std::size_t add_extra(const std::string& name, ScalarType type, const LasAxis* axis = nullptr);
+  [[nodiscard]] std::uint8_t alpha_of(const RayCloud& rays, std::size_t row) const;
   void encode_rays(const RayCloud& rays, std::byte* records) const;
   void encode_column(const Column& column, const Place& place, std::byte* records) const;
   void encode_field(const Column& column, LasField field, std::byte* records) const;

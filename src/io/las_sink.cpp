@@ -155,7 +155,7 @@ void LasSink::encode(const RayCloud& rays, RawChunk& raw) const {
   if (content_.starts) put_values(raw.bytes, rays.starts);
   put_values(raw.bytes, rays.times);
   put_values(raw.bytes, rays.colours);
-  if (content_.starts) put_values(raw.bytes, rays.bounded);
+  put_values(raw.bytes, rays.bounded);
   for (const Column& column : rays.extras)
     raw.bytes.insert(raw.bytes.end(), column.data(), column.data() + rays.size() * column.stride());
 }
@@ -178,7 +178,7 @@ void LasSink::read_piece(std::size_t number, std::vector<std::byte>& bytes, RayC
   if (content_.starts) in = take_values(in, rays.starts);
   in = take_values(in, rays.times);
   in = take_values(in, rays.colours);
-  if (content_.starts) in = take_values(in, rays.bounded);
+  in = take_values(in, rays.bounded);
   for (Column& column : rays.extras) {
     std::memcpy(column.data(), in, rays.size() * column.stride());
     in += rays.size() * column.stride();

@@ -174,7 +174,8 @@ class PlySource final : public RaySource {
     info_.present.starts = schema.ray.has_value();
     info_.present.times = schema.time.has_value();
     info_.present.colours = schema.colour.has_value();
-    info_.present.intensity = schema.alpha.has_value() && (schema.ray.has_value() || !has_intensity);
+    info_.present.intensity =
+        schema.alpha.has_value() && (schema.ray.has_value() || !has_intensity || !info_.history.empty());
   }
 
   InputFile file_;

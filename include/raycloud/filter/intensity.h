@@ -38,9 +38,9 @@ struct IntensityScale {
 /// ("scalar_Intensity"); empty if there is none.
 [[nodiscard]] std::string intensity_column(const CloudInfo& info);
 
-/// `max_intensity` as given (0: all rays bounded), else the least of 1 (not for integers), 255, 4095, 65535
-/// that is not below the highest value, else that value; uint8 always has 255. All zeros mean that there is
-/// no intensity: all rays are bounded.
+/// `max_intensity` as given (0: all rays bounded). Without it, a source that has the 8-bit intensity keeps
+/// that; else the least of 1 (not for integers), 255, 4095, 65535 that is not below the highest value, else
+/// that value; uint8 always has 255. All zeros mean that there is no intensity: all rays are bounded.
 [[nodiscard]] IntensityScale intensity_scale(const CloudInfo& info, const IntensityRange& range,
                                              std::optional<double> max_intensity);
 

@@ -29,10 +29,11 @@
 namespace ray {
 
 /// Opens points to import. Sensor positions are there (info().present.starts) if the file has BeamOrigin
-/// extra bytes, else starts equal ends; all rays are bounded unless `Bounded` says otherwise. Whether a whole
-/// uncompressed file is there is checked now. Chunks of a LAZ file follow its own division and may be longer
-/// than `options.chunk_rays`, up to 65536 rays; they are decompressed on as many threads as call `decode`,
-/// except where a file has no such division (LASzip 1), a larger one, or a variable one that is not COPC.
+/// extra bytes, else starts equal ends; all rays are bounded unless `Bounded`, or an `Alpha` of 0 among
+/// points exported from a ray cloud, says otherwise. Whether a whole uncompressed file is there is checked
+/// now. Chunks of a LAZ file follow its own division and may be longer than `options.chunk_rays`, up to 65536
+/// rays; they are decompressed on as many threads as call `decode`, except where a file has no such division
+/// (LASzip 1), a larger one, or a variable one that is not COPC.
 ///
 /// Throws Error: file_not_found, file_access, file_format (not LAS, cut, damaged: "x.laz: damaged after point
 /// 100000 of 531662": the points before are sure; also from decode and fetch).

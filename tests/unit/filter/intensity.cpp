@@ -23,7 +23,15 @@ RayCloud with_intensity(const std::vector<T>& values) {
 template <class T>
 IntensityScale scale_for(const std::vector<T>& values, std::optional<double> maximum = {}) {
   const RayCloud rays = with_intensity(values);
-  return intensity_scale({.extras = schema_of(rays)}, intensity_range(rays, "intensity"), maximum);
+  return intensity_scale({.extras = schema_of(rays), .present = {.intensity = false}},
+                         intensity_range(rays, "intensity"), maximum);
+}
+
+TEST(intensity, a_source_that_has_8_bits_already_keeps_them_unless_asked) {
+  const CloudInfo both{.extras = {{"intensity", ScalarType::uint16}}, .present = {.intensity = true}};
+  EXPECT_EQ(intensity_scale(both, {0.0, 900.0}, {}).rule, Rule::keep);
+  EXPECT_EQ(intensity_scale(both, {0.0, 900.0}, 1000.0).rule, Rule::scaled);
+  EXPECT_EQ(intensity_scale(both, {0.0, 900.0}, 0.0).rule, Rule::all_bounded);
 }
 
 TEST(intensity, the_maximum_follows_type_and_range) {

@@ -139,25 +139,26 @@ RC_GTEST_PROP(FileLaws, DecimationKeepsTheFirstRayOfEveryOccupiedVoxelAndNoOther
 }
 
 /// A sensor that moves smoothly at up to `speed` m/s; its cloud is what such a sensor would have recorded.
-RayCloud moving_sensor_cloud(std::uint64_t seed, std::size_t rays, double speed) {
-  RayCloud cloud = random_cloud(seed, {.rays = rays});
+RayCloud moving_sensor_cloud(std::uint64_t seed, std::size_t rays, double speed,
+                             std::vector<ColumnInfo> extras) {
+  RayCloud cloud = random_cloud(seed, {.rays = rays, .extras = std::move(extras)});
   for (std::size_t i = 0; i < rays; ++i) {
     cloud.times[i] = 1000.0 + 0.001 * static_cast<double>(i);
     const double phase = 0.5 * cloud.times[i];
     cloud.starts[i] =
         2.0 * speed * Eigen::Vector3d(std::sin(phase), std::cos(phase), 0.1 * std::sin(2.0 * phase));
-    cloud.bounded[i] = 1;
-    cloud.colours[i].intensity = std::max<std::uint8_t>(cloud.colours[i].intensity, 1);
+    if (cloud.bounded[i] == 0) cloud.colours[i].intensity = 0;
   }
   return cloud;
 }
 
-void check_export_import(const char* points_name, double end_tolerance) {
+void check_export_import(const char* points_name, double end_tolerance, std::vector<ColumnInfo> extras = {}) {
   const test::Scratch scratch;
-  const RayCloud cloud = moving_sensor_cloud(11, 5000, 1.5);
+  const RayCloud cloud = moving_sensor_cloud(11, 5000, 1.5, std::move(extras));
   MemorySource source(cloud);
   SensorPath path(0.1);
   CloudInfo info = source.info();
+  info.history = {"rayexport"};
   const auto points = create_points(scratch.path(points_name), info);
   stream(
       Context{}, source, points.get(), [](RayCloud&) { return Nothing{}; },
@@ -175,6 +176,8 @@ void check_export_import(const char* points_name, double end_tolerance) {
   EXPECT_LE(worst_distance(back.ends, cloud.ends), end_tolerance) << points_name;
   EXPECT_EQ(back.times, cloud.times) << points_name;
   EXPECT_EQ(back.colours, cloud.colours) << points_name;
+  EXPECT_EQ(back.bounded, cloud.bounded) << points_name;
+  EXPECT_TRUE(back.extras == cloud.extras) << points_name;
   // Acceleration a of the path bounds the chord error of nodes at most 0.2 s apart: a t^2 / 8, a < 1 m/s2.
   EXPECT_LE(worst_distance(back.starts, cloud.starts), 0.2 * 0.2 / 8.0 + 1e-3) << points_name;
 }
@@ -185,6 +188,13 @@ TEST(FileLaws, ExportThenImportGivesEndsAndTimesExactlyAndStartsWithinTheSamplin
   check_export_import("points.csv", 0.0);
   check_export_import("points.laz", 1e-4);
   check_export_import("points.las", 1e-4);
+}
+
+TEST(FileLaws, ExportThenImportKeepsBothIntensitiesAndEveryColumn) {
+  std::vector<ColumnInfo> extras = test::schema_of_every_type();
+  extras.push_back({"intensity", ScalarType::uint16});
+  for (const char* points : {"points.ply", "points.las", "points.laz"})
+    check_export_import(points, 1e-4, extras);
 }
 
 TEST(FileLaws, UtmCoordinatesKeepATenthOfAMillimetreThroughEveryStep) {
