@@ -21,7 +21,7 @@ StreamCounts stream_once(const CloudToCloud& files, const CloudInfo& info, RaySo
 }  // namespace
 
 void run_cloud_to_cloud(cli::Session& session, const CloudToCloud& files, const StreamingCall& call) {
-  const auto source = open_ray_cloud(files.input);
+  const auto source = open_ray_cloud(files.input, {.will_be_replaced = files.input == files.output});
   CloudInfo info = source->info();
   info.history.push_back(session.history());
   if (files.coordinate_step > 0.0) {

@@ -23,9 +23,11 @@ namespace {
 
 }  // namespace
 
-InputFile::InputFile(const std::filesystem::path& path)
+InputFile::InputFile(const std::filesystem::path& path, const ReadOptions& options)
     // Not to hang on a pipe that nobody writes to.
-    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    : path_(path),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
+      will_be_replaced_(options.will_be_replaced) {
   if (descriptor_ < 0) fail(path, errno);
   struct stat status {};
   const int error = ::fstat(descriptor_, &status) == 0 ? 0 : errno;
@@ -47,6 +49,9 @@ InputFile::~InputFile() {
 }
 
 std::size_t InputFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
+  constexpr std::uint64_t kForgotten = 32 << 20;  // at a time
+  if (will_be_replaced_ && offset / kForgotten != (offset + bytes.size()) / kForgotten)
+    ::posix_fadvise(descriptor_, 0, static_cast<off_t>(offset), POSIX_FADV_DONTNEED);
   constexpr std::size_t kMaxRead = std::size_t{1} << 30;
   std::size_t total = 0;
   while (total < bytes.size()) {

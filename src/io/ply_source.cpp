@@ -130,7 +130,7 @@ bool has_surface_normals(const PlyHeader& header, const PlySchema& schema, const
 class PlySource final : public RaySource {
  public:
   PlySource(const std::filesystem::path& path, const ReadOptions& options, PlyContent content)
-      : file_(path),
+      : file_(path, options),
         header_(read_ply_header(file_)),
         chunk_rays_(std::max<std::size_t>(options.chunk_rays, 1)),
         decoder_(open(content)) {}
