@@ -90,7 +90,8 @@ void laz_import(const Paths& p) {
   const std::string laz = p.file("points.laz");
   const std::string out = p.file("imported.ply");
   const auto imported = bench::time_against(
-      {p.command("rayimport -q " + laz + " " + p.file("trajectory.txt") + " -o " + out + " 2>/dev/null"), "rm -f " + out},
+      {p.command("rayimport -q " + laz + " " + p.file("trajectory.txt") + " -o " + out + " 2>/dev/null"),
+       "rm -f " + out},
       {"exec " + p.bin + "/laszip_loop " + laz, ""}, kRuns);
   row("rayimport LAZ", imported, p.rays, "LASzip loop", "≤ 1/1.6 of the loop", imported.ratio <= 1.0 / 1.6);
   bench::run("rm -f " + out);

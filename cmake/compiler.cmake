@@ -12,7 +12,8 @@ target_compile_options(raycloud_build INTERFACE
   # Results must be the same bits on every build: never fuse a multiplication and an addition.
   -ffp-contract=off)
 
+# Paths below the project count as relative, so that one clone profits from what another has compiled.
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()

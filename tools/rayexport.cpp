@@ -8,6 +8,7 @@
 #include <raycloud/io/ray_cloud_file.h>
 #include <raycloud/io/trajectory_file.h>
 
+#include <cstdio>
 #include <optional>
 
 namespace {
@@ -37,6 +38,16 @@ marks an unbounded ray.)",
     .memory = "Less than 200 MB for any cloud, and 40 bytes for each node of the trajectory.",
     .see_also = {"rayimport"}};
 
+void note_sampling_error(Session& session, ray::RaySource& source, const ray::Trajectory& trajectory) {
+  if (trajectory.empty()) return;
+  source.rewind();
+  char text[96];
+  std::snprintf(text, sizeof text,
+                "ray starts are within %.3g m of the trajectory (--traj_delta sets its spacing)",
+                sampling_error(session.context(), source, trajectory).value);
+  session.note(text);
+}
+
 void run(const Match& match, Session& session) {
   const std::string& points = match.text("POINTS");
   const std::string& trajectory = match.text("TRAJECTORY");
@@ -57,8 +68,10 @@ void run(const Match& match, Session& session) {
 
   std::vector<std::filesystem::path> files;
   if (path) {
-    ray::write_trajectory(trajectory, path->trajectory());
+    const ray::Trajectory nodes = path->trajectory();
+    ray::write_trajectory(trajectory, nodes);
     files.emplace_back(trajectory);
+    note_sampling_error(session, *source, nodes);
   }
   if (sink) {
     sink->finish();

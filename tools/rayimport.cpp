@@ -1,7 +1,6 @@
 #include "cli/cli.h"
-#include "trajectory_input.h"
+#include "moving_sensor.h"
 
-#include <raycloud/core/error.h>
 #include <raycloud/filter/import_rays.h>
 #include <raycloud/io/point_file.h>
 #include <raycloud/io/ray_cloud_file.h>
@@ -10,13 +9,13 @@ namespace {
 
 using namespace ray::cli;
 
-Command with_trajectory_options(Command command) {
-  for (Option& option : ray::tools::trajectory_options("trajectory"))
+Command with_moving_sensor_options(Command command) {
+  for (Option& option : ray::tools::moving_sensor_options("trajectory"))
     command.options.push_back(std::move(option));
   return command;
 }
 
-const Command kCommand = with_trajectory_options(
+const Command kCommand = with_moving_sensor_options(
     {.name = "rayimport",
      .summary = "make a ray cloud from points and what is known of the sensor",
      .description =
@@ -50,11 +49,6 @@ sensor positions are audited, and what looks wrong is told with the option that 
                  {.name = "max_intensity",
                   .value = number("N", kNonNegative),
                   .help = "intensity that becomes 255; 0: all rays hit something. Default: from the file"},
-                 {.name = "traj_offset",
-                  .value = vector("X,Y,Z"),
-                  .help =
-                      "position of the lidar in the frame of the trajectory, in metres; needs orientations",
-                  .usages = {"trajectory"}},
                  {.name = "time_offset",
                   .value = number("S", kAny),
                   .help = "seconds to add to the times of the points",
@@ -64,24 +58,13 @@ sensor positions are audited, and what looks wrong is told with the option that 
                   .help = "what to multiply the times of the points by, before the offset",
                   .fallback = "1"},
                  {.name = "remove_start_pos", .help = "move the cloud so that the sensor starts at 0,0,0"},
-                 {.name = "clamp",
-                  .help = "keep points outside the trajectory's time span, at its first or last position",
-                  .advanced = true,
-                  .usages = {"trajectory"}},
                  view_option()},
      .writes = "POINTS.ply, or POINTS_raycloud.ply if POINTS is a .ply",
      .memory = "Less than 200 MB for any number of points, and the trajectory.",
      .see_also = {"rayexport", "rayinfo"}});
 
-ray::MovingSensor moving_sensor(const Match& match, Session& session) {
-  ray::MovingSensor sensor{.trajectory = ray::tools::read_trajectory_input(match, session)};
-  if (match.has("--traj_offset")) sensor.lever_arm = match.vector("--traj_offset");
-  sensor.clamp = match.has("--clamp");
-  return sensor;
-}
-
 ray::SensorOrigin sensor_origin(const Match& match, Session& session) {
-  if (match.usage() == "trajectory") return moving_sensor(match, session);
+  if (match.usage() == "trajectory") return ray::tools::read_moving_sensor(match, session);
   if (match.usage() == "fixed") return ray::FixedSensor{match.vector("X,Y,Z")};
   if (match.usage() == "constant") return ray::ConstantRay{match.vector("X,Y,Z")};
   return ray::OwnOrigins{};

@@ -1,4 +1,5 @@
 #include <raycloud/core/error.h>
+#include <raycloud/exec/stream.h>
 #include <raycloud/filter/sensor_path.h>
 
 #include <algorithm>
@@ -40,6 +41,22 @@ Trajectory SensorPath::trajectory() const {
     path.positions.push_back(node.position);
   }
   return path;
+}
+
+Metres sampling_error(const Context& context, RaySource& source, const Trajectory& trajectory) {
+  double largest = 0.0;  // squared
+  const auto of_chunk = [&](const RayCloud& rays) {
+    double squared = 0.0;
+    TrajectorySpot spot;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      spot = spot_at(trajectory, rays.times[i], spot.node);
+      squared = std::max(squared, (rays.starts[i] - position_at(trajectory, spot)).squaredNorm());
+    }
+    return squared;
+  };
+  stream(context, source, nullptr, of_chunk,
+         [&](RayCloud&, double squared) { largest = std::max(largest, squared); });
+  return {std::sqrt(largest)};
 }
 
 }  // namespace ray

@@ -1,8 +1,10 @@
 #pragma once
 /// The trajectory back out of a ray cloud: the origins of its rays, thinned in time.
 
-#include <raycloud/core/ray_cloud.h>
+#include <raycloud/core/ray_stream.h>
 #include <raycloud/core/trajectory.h>
+#include <raycloud/core/units.h>
+#include <raycloud/exec/context.h>
 
 #include <unordered_map>
 
@@ -34,5 +36,11 @@ class SensorPath {
   double known_end_ = 0.0;
   Node last_{};
 };
+
+/// The sampling error of a trajectory for a cloud: how far, at most, the start of a ray is from where the
+/// trajectory says that the sensor was at its time. Importing the cloud's points with it moves no start
+/// further. 0 without rays. Streaming; reads `source` from where it stands to its end. Precondition: the
+/// trajectory is not empty.
+[[nodiscard]] Metres sampling_error(const Context& context, RaySource& source, const Trajectory& trajectory);
 
 }  // namespace ray

@@ -1,11 +1,19 @@
-#include "trajectory_input.h"
+#include "moving_sensor.h"
 
 #include <raycloud/io/trajectory_file.h>
 
 namespace ray::tools {
 
-std::vector<cli::Option> trajectory_options(const std::string& usage) {
-  return {{.name = "traj_format",
+std::vector<cli::Option> moving_sensor_options(const std::string& usage) {
+  return {{.name = "traj_offset",
+           .value = cli::vector("X,Y,Z"),
+           .help = "position of the lidar in the frame of the trajectory, in metres; needs orientations",
+           .usages = {usage}},
+          {.name = "clamp",
+           .help = "keep points outside the trajectory's time span, at its first or last position",
+           .advanced = true,
+           .usages = {usage}},
+          {.name = "traj_format",
            .value = cli::text("COLUMNS"),
            .help = "columns of the trajectory, as in t,x,y,z,qw,qx,qy,qz (- skips one)",
            .advanced = true,
@@ -24,7 +32,7 @@ std::vector<cli::Option> trajectory_options(const std::string& usage) {
            .usages = {usage}}};
 }
 
-Trajectory read_trajectory_input(const cli::Match& match, cli::Session& session) {
+MovingSensor read_moving_sensor(const cli::Match& match, cli::Session& session) {
   TrajectoryReadOptions options;
   if (match.has("--traj_format")) options.format = match.text("--traj_format");
   options.time_scale = match.number("--traj_time_scale");
@@ -33,7 +41,10 @@ Trajectory read_trajectory_input(const cli::Match& match, cli::Session& session)
   TrajectoryFile file = read_trajectory(name, options);
   for (const std::string& note : file.notes)
     session.note(name + ": " + note);
-  return std::move(file.trajectory);
+
+  MovingSensor sensor{.trajectory = std::move(file.trajectory), .clamp = match.has("--clamp")};
+  if (match.has("--traj_offset")) sensor.lever_arm = match.vector("--traj_offset");
+  return sensor;
 }
 
 }  // namespace ray::tools
