@@ -3,6 +3,7 @@
 #include "las_fixture.h"
 #include "support/random_cloud.h"
 #include "support/scratch.h"
+#include "support/shared_data.h"
 
 #include <raycloud/core/error.h>
 
@@ -15,19 +16,6 @@ namespace {
 using namespace ray;
 using namespace ray::test;
 using namespace ray::test::las;
-
-std::vector<std::filesystem::path> corpus() {
-  std::filesystem::path root = std::filesystem::path(__FILE__).parent_path();
-  std::vector<std::filesystem::path> files;
-  for (int up = 0; up < 6 && files.empty(); ++up, root = root.parent_path()) {
-    const auto folder = root / "shared" / "data" / "corpus_las";
-    if (!std::filesystem::is_directory(folder)) continue;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.path().extension() != ".tsv") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 void expect_same(const PlainPoints& plain, const RayCloud& rays) {
   ASSERT_EQ(plain.ends.size(), rays.size());
@@ -55,8 +43,8 @@ void expect_same(const PlainPoints& plain, const RayCloud& rays) {
 }
 
 TEST(LasCorpus, SamePointsAsAPlainLoopOrAnError) {
-  const auto files = corpus();
-  if (files.empty()) GTEST_SKIP() << "no folder shared/data/corpus_las above the source";
+  const auto files = shared_files("corpus_las");
+  if (files.empty()) GTEST_SKIP() << kNoSharedFiles;
   std::size_t read = 0;
   for (const auto& path : files) {
     SCOPED_TRACE(path.filename().string());
@@ -77,8 +65,8 @@ TEST(LasCorpus, SamePointsAsAPlainLoopOrAnError) {
 }
 
 TEST(LasCorpus, WrittenAndReadBackNothingIsLost) {
-  const auto files = corpus();
-  if (files.empty()) GTEST_SKIP() << "no folder shared/data/corpus_las above the source";
+  const auto files = shared_files("corpus_las");
+  if (files.empty()) GTEST_SKIP() << kNoSharedFiles;
   const Scratch scratch;
   for (const auto& path : files) {
     SCOPED_TRACE(path.filename().string());

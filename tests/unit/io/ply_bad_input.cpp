@@ -2,6 +2,7 @@
 #include "ply_fixture.h"
 #include "support/random_cloud.h"
 #include "support/scratch.h"
+#include "support/shared_data.h"
 
 #include <raycloud/io/ply_cloud.h>
 
@@ -190,25 +191,22 @@ TEST_F(PlyBadInput, FilesThatCannotBeOpened) {
 }
 
 TEST(PlyCorpus, EveryFileOfTheFieldGivesRaysOrAnError) {
-  const char* elsewhere = std::getenv("RAYCLOUD_TEST_DATA");
-  const auto beside_repository = std::filesystem::path(__FILE__).parent_path() / "../../../../shared/data";
-  const std::filesystem::path data = elsewhere != nullptr ? elsewhere : beside_repository;
-  const auto folder = data / "corpus_ply";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder << ": set RAYCLOUD_TEST_DATA";
+  const auto corpus = shared_files("corpus_ply");
+  if (corpus.empty()) GTEST_SKIP() << kNoSharedFiles;
   std::size_t readable = 0, files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  for (const auto& file : corpus) {
     for (const auto open : {open_ply, open_ply_points}) {
       ++files;
       const auto error = error_of([&] {
-        const auto source = open(entry.path(), {.chunk_rays = 7});
+        const auto source = open(file, {.chunk_rays = 7});
         const auto result = read_rest(*source);
-        EXPECT_EQ(result.rays.size() + result.dropped, source->info().ray_count) << entry.path();
+        EXPECT_EQ(result.rays.size() + result.dropped, source->info().ray_count) << file;
         ++readable;
       });
       if (error) {
         const std::string what = error->what();
-        EXPECT_THAT(what, StartsWith(entry.path().string() + ": "));
-        EXPECT_LT(what.size(), entry.path().string().size() + 200) << what;
+        EXPECT_THAT(what, StartsWith(file.string() + ": "));
+        EXPECT_LT(what.size(), file.string().size() + 200) << what;
       }
     }
   }
