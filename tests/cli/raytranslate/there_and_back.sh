@@ -25,7 +25,7 @@ there_and_back() {
     END { print (worst <= 1e-4 && NR == 1001 ? "within 0.1 mm" : move " is off by " worst " m in " NR " rows") }'
 }
 
-for factor in 1 9 40 150; do
+for factor in 9 40; do
   cloud_of_size "$factor"
   there_and_back raytranslate 123.456,-78.9,0.123
   there_and_back rayrotate 10,-20,33.3
