@@ -4,9 +4,8 @@ target_compile_options(raycloud_build INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
   # Options structs are initialised by name; members left out keep their defaults.
   -Wno-missing-field-initializers
-  # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651, mended in 13).
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
-  # GCC 12 sees overlapping copies and unset members inside its own std::string where there are none.
+  # GCC sees overlapping copies and unset members inside its own std::string where there are none
+  # (GCC bug 105651 and its kin).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>
   $<$<BOOL:${RAYCLOUD_WERROR}>:-Werror>
   # Results must be the same bits on every build: never fuse a multiplication and an addition.

@@ -1,7 +1,6 @@
 #pragma once
 // LAS files made by hand and read by LASzip's own loop: what the reader is held against.
 
-#include "support/foreign_leaks.h"
 
 #include <raycloud/core/ray_cloud.h>
 #include <raycloud/core/ray_stream.h>
@@ -242,7 +241,6 @@ struct CompressOptions {
 /// The LAS file `from` as LAZ, by LASzip.
 inline void compress(const std::filesystem::path& from, const std::filesystem::path& to,
                      const CompressOptions& options = {}) {
-  const ForeignLeaks of_the_compatibility_mode;  // 4 KiB a writer in LASzip 3.5
   laszip_POINTER reader = nullptr;
   laszip_POINTER writer = nullptr;
   laszip_create(&reader);
