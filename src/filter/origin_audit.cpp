@@ -17,7 +17,9 @@ namespace {
 constexpr std::size_t kMostSampled = 400'000;
 constexpr std::size_t kMostWalked = 20'000;
 constexpr std::size_t kMostSteps = std::size_t{1} << 18;
-constexpr double kZeroLength = 1e-6;  // m
+constexpr std::uint64_t kAllUpTo = 1'000'000;  // rays; of the later ones some say enough
+constexpr std::uint64_t kOneIn = 7;            // shares no factor with the number of beams
+constexpr double kZeroLength = 1e-6;           // m
 
 // Lengths in a histogram by the leading bits of their square: 64 bins an octave, from 1 µm to 1000 km.
 constexpr int kBinBits = 5;
@@ -60,13 +62,16 @@ void OriginAudit::add(const RayCloud& rays) {
     anchor_time_ = rays.times.front();
   }
   add_sameness(rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+  const std::uint64_t end = count_ + rays.size();
+  for (; next_measured_ < end; next_measured_ += next_measured_ < kAllUpTo ? 1 : kOneIn) {
+    const std::size_t i = next_measured_ - count_;
     add_length((rays.ends[i] - rays.starts[i]).squaredNorm(), rays.bounded[i] != 0);
     add_step(rays.times[i], rays.starts[i]);
+    ++measured_;
   }
-  for (; next_sampled_ < count_ + rays.size(); next_sampled_ = sampled_of(++block_))
+  for (; next_sampled_ < end; next_sampled_ = sampled_of(++block_))
     add_sample(rays, next_sampled_ - count_);
-  count_ += rays.size();
+  count_ = end;
 }
 
 // Stops looking at the first difference, which for most clouds is their second ray.
@@ -142,7 +147,7 @@ OriginFindings OriginAudit::findings(const Context& context, const AuditOptions&
 
 void OriginAudit::judge_lengths(OriginFindings& result) const {
   const auto total = std::accumulate(lengths_.begin(), lengths_.end(), std::uint64_t{0});
-  result.zero_length = static_cast<double>(zero_) / static_cast<double>(count_);
+  result.zero_length = static_cast<double>(zero_) / static_cast<double>(measured_);
   if (result.zero_length > kManyZero)
     result.findings.push_back(
         line("%.1f %% of the rays have no length: missed returns recorded at the sensor, or no "

@@ -9,7 +9,7 @@
 namespace ray {
 namespace {
 
-constexpr std::size_t kMostChunks = 8;
+constexpr std::size_t kMostChunks = 4;
 
 struct Picked {
   std::vector<RawChunk> chunks;
