@@ -12,24 +12,28 @@ install(TARGETS ${room_targets} EXPORT raycloudTargets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/raycloud DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# For CMake. stb is compiled in and Eigen, oneTBB and LASzip are found again where the library is used.
+# For CMake. stb is compiled in; Eigen, oneTBB, LASzip and Embree are found again where the library is used.
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/raycloud)
 install(EXPORT raycloudTargets NAMESPACE raycloud:: DESTINATION ${config_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/raycloudConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/raycloudConfig.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/raycloudConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/raycloudConfig.cmake ${PROJECT_BINARY_DIR}/raycloudConfigVersion.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindLASzip.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindLASzip.cmake ${CMAKE_CURRENT_LIST_DIR}/FindEmbree.cmake
         DESTINATION ${config_dir})
 
 # For pkg-config. A static library comes before those it uses; rooms are declared the other way round.
 list(REVERSE rooms)
 list(TRANSFORM rooms PREPEND -lraycloud_)
 list(JOIN rooms " " pc_libraries)
-cmake_path(GET LASzip_LIBRARY PARENT_PATH laszip_dir)
-if(NOT laszip_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
-  string(APPEND pc_libraries " -L${laszip_dir}")
-endif()
+foreach(library ${LASzip_LIBRARY} ${Embree_LIBRARY})
+  cmake_path(GET library PARENT_PATH library_dir)
+  if(NOT library_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+    string(APPEND pc_libraries " -L${library_dir}")
+  endif()
+endforeach()
+cmake_path(GET Embree_LIBRARY STEM embree_name)
+string(REGEX REPLACE "^lib" "-l" pc_embree ${embree_name})
 set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}/${pc_dir}
            OUTPUT_VARIABLE pc_prefix)

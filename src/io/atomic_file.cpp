@@ -68,6 +68,7 @@ AtomicFile::AtomicFile(std::filesystem::path target, const WriteOptions& options
     [[maybe_unused]] const int owner_kept = ::fchown(descriptor_, status.st_uid, status.st_gid);
     [[maybe_unused]] const int mode_kept = ::fchmod(descriptor_, status.st_mode & 07777);
   }
+  rest();
 }
 
 void AtomicFile::open_temporary(const std::filesystem::path& real) {
@@ -113,7 +114,22 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
   }
 }
 
+void AtomicFile::reopen() {
+  if (descriptor_ >= 0) return;
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0) fail(errno);
+}
+
+void AtomicFile::close() {
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
+}
+
+void AtomicFile::rest() {
+  if (options_.close_between_writes && !real_.empty()) close();
+}
+
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  reopen();
   while (!bytes.empty()) {
     const auto written =
         ::pwrite(descriptor_, bytes.data(), std::min(bytes.size(), kMaxWrite), static_cast<off_t>(offset));
@@ -124,6 +140,7 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
     size_ = std::max(size_, offset);
   }
   if (options_.flush_to_disk) start_flush();
+  rest();
 }
 
 /// The disk works while the rest is computed; what commit() waits for is then short.
@@ -147,8 +164,9 @@ void AtomicFile::write_at(std::uint64_t offset, std::string_view text) {
 
 void AtomicFile::commit() {
   const bool in_place = real_.empty();
+  reopen();
   if (options_.flush_to_disk && !in_place && ::fsync(descriptor_) != 0) fail(errno);
-  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
+  close();
   if (in_place) return;
   if (::rename(temporary_.c_str(), real_.c_str()) != 0) fail(errno);
   temporary_.clear();

@@ -122,7 +122,11 @@ class LasSink final : public RaySink {
  public:
   LasSink(const std::filesystem::path& path, const CloudInfo& info, const LasContent& content,
           const WriteOptions& options)
-      : file_(path, options), spool_(path), info_(info), content_(content), compressed_(is_laz(path)) {}
+      : file_(path, options),
+        spool_(path, options),
+        info_(info),
+        content_(content),
+        compressed_(is_laz(path)) {}
 
   void encode(const RayCloud& rays, RawChunk& raw) const override;
   void write(const RawChunk& raw) override;

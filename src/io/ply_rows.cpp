@@ -1,5 +1,6 @@
 #include "ply_rows.h"
 
+#include "forward_reader.h"
 #include "ply_text.h"
 
 #include <raycloud/core/error.h>
@@ -13,7 +14,6 @@ namespace ray {
 namespace {
 
 constexpr std::size_t kMaxBlock = std::size_t{64} << 20;
-constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
 [[noreturn]] void fail_truncated(const PlyRowNames& names, std::uint64_t whole_rows, std::uint64_t count,
                                  std::uint64_t file_size) {
@@ -39,50 +39,6 @@ constexpr std::size_t kBuffer = std::size_t{1} << 20;
                                           std::to_string(count) + " " + names.noun +
                                           "s): the count is wrong or " + "the file is damaged");
 }
-
-/// Reads a file forwards through a buffer.
-class ForwardReader {
- public:
-  ForwardReader(const InputFile& file, std::uint64_t offset) : file_(file), offset_(offset) {}
-
-  [[nodiscard]] std::uint64_t position() const { return offset_ + used_; }
-  void seek(std::uint64_t position) {
-    offset_ = position;
-    used_ = 0;
-    buffer_.clear();
-  }
-
-  /// The bytes from here on: at least `wanted` if the file has them. Valid until the next call.
-  [[nodiscard]] std::span<const std::byte> peek(std::size_t wanted) {
-    if (buffer_.size() - used_ < wanted && offset_ + buffer_.size() < file_.size()) {
-      buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(used_));
-      offset_ += used_;
-      used_ = 0;
-      const std::size_t kept = buffer_.size();
-      buffer_.resize(static_cast<std::size_t>(
-          std::min<std::uint64_t>(std::max(wanted, kBuffer), file_.size() - offset_)));
-      buffer_.resize(kept + file_.read_at(offset_ + kept, std::span(buffer_).subspan(kept)));
-    }
-    return std::span<const std::byte>(buffer_).subspan(used_);
-  }
-
-  /// Forwards by a number of bytes that may lie beyond the buffer. False if the file has fewer.
-  [[nodiscard]] bool skip(std::uint64_t bytes) {
-    const std::uint64_t here = position();
-    if (bytes > file_.size() - std::min(here, file_.size())) return false;
-    if (bytes <= buffer_.size() - used_)
-      used_ += static_cast<std::size_t>(bytes);
-    else
-      seek(here + bytes);
-    return true;
-  }
-
- private:
-  const InputFile& file_;
-  std::uint64_t offset_;  // of the buffer in the file
-  std::size_t used_ = 0;  // bytes of the buffer
-  std::vector<std::byte> buffer_;
-};
 
 /// The value of a whole number, which is negative for no valid list length.
 std::int64_t read_whole(const std::byte* bytes, ScalarType type, bool big_endian) {

@@ -198,4 +198,25 @@ PlyNotes notes_of(const PlyHeader& header, const std::string& path) {
   return notes;
 }
 
+CloudInfo described(const PlyNotes& notes, const PlySchema& schema) {
+  const auto is_wide = [](const PlyField& field) {
+    return field.type != ScalarType::float32 && size_of(field.type) > 2;
+  };
+  const bool moved = notes.origin != std::array<double, 3>{};
+  const bool wide = moved || std::any_of(schema.end.begin(), schema.end.end(), is_wide) ||
+                    (schema.ray && std::any_of(schema.ray->begin(), schema.ray->end(), is_wide));
+  CloudInfo info = notes.info;
+  info.precision = wide ? Precision::double_ : Precision::single;
+  for (const PlyExtra& extra : schema.extras)
+    info.extras.push_back(extra.info);
+  const bool has_intensity = std::any_of(info.extras.begin(), info.extras.end(),
+                                         [](const ColumnInfo& column) { return column.name == "intensity"; });
+  info.present.starts = schema.ray.has_value();
+  info.present.times = schema.time.has_value();
+  info.present.colours = schema.colour.has_value();
+  info.present.intensity =
+      schema.alpha.has_value() && (schema.ray.has_value() || !has_intensity || !info.history.empty());
+  return info;
+}
+
 }  // namespace ray

@@ -65,4 +65,7 @@ struct PlyNotes {
 /// Throws Error(file_format) that names `path` for a version of the future or a malformed origin.
 [[nodiscard]] PlyNotes notes_of(const PlyHeader& header, const std::string& path);
 
+/// All that header and columns tell of the cloud but the number of its rows.
+[[nodiscard]] CloudInfo described(const PlyNotes& notes, const PlySchema& schema);
+
 }  // namespace ray

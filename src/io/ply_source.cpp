@@ -89,10 +89,6 @@ PlyColourScale colour_scale(const Sample& sample, const PlySchema& schema) {
   return scale;
 }
 
-bool is_wide(const PlyField& field) {
-  return field.type != ScalarType::float32 && size_of(field.type) > 2;
-}
-
 std::uint64_t face_count(const PlyHeader& header) {
   std::uint64_t count = 0;
   for (const PlyElement& element : header.elements) {
@@ -151,31 +147,14 @@ class PlySource final : public RaySource {
     const std::uint64_t count = header_.elements[header_.vertex].count;
     PlySchema schema = schema_of(layout, content, PlyNormals::rays, path);
     rows_ = open_ply_rows(file_, header_, {path, content == PlyContent::rays ? "ray" : "point"});
-    PlyNotes notes = notes_of(header_, path);
+    const PlyNotes notes = notes_of(header_, path);
     const Sample sample = take_sample(*rows_, layout, count);
     const bool normals = !notes.ours && has_surface_normals(header_, schema, sample, content);
     if (content == PlyContent::rays && (!schema.ray || normals)) fail_no_rays(header_, normals, path);
     if (normals) schema = schema_of(layout, content, PlyNormals::surface, path);
-    info_ = std::move(notes.info);
-    describe(schema, count, notes.origin != std::array<double, 3>{});
-    return {schema, layout, notes.origin, colour_scale(sample, schema)};
-  }
-
-  void describe(const PlySchema& schema, std::uint64_t count, bool moved) {
+    info_ = described(notes, schema);
     info_.ray_count = count;
-    const bool wide = moved || std::any_of(schema.end.begin(), schema.end.end(), is_wide) ||
-                      (schema.ray && std::any_of(schema.ray->begin(), schema.ray->end(), is_wide));
-    info_.precision = wide ? Precision::double_ : Precision::single;
-    for (const PlyExtra& extra : schema.extras)
-      info_.extras.push_back(extra.info);
-    const bool has_intensity =
-        std::any_of(info_.extras.begin(), info_.extras.end(),
-                    [](const ColumnInfo& column) { return column.name == "intensity"; });
-    info_.present.starts = schema.ray.has_value();
-    info_.present.times = schema.time.has_value();
-    info_.present.colours = schema.colour.has_value();
-    info_.present.intensity =
-        schema.alpha.has_value() && (schema.ray.has_value() || !has_intensity || !info_.history.empty());
+    return {schema, layout, notes.origin, colour_scale(sample, schema)};
   }
 
   InputFile file_;

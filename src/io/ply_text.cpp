@@ -17,18 +17,6 @@ bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-std::string_view take_token(std::string_view& text) {
-  const char* next = text.data();
-  const char* const end = next + text.size();
-  while (next != end && is_space(*next))
-    ++next;
-  const char* const begin = next;
-  while (next != end && !is_space(*next))
-    ++next;
-  text = {next, static_cast<std::size_t>(end - next)};
-  return {begin, static_cast<std::size_t>(next - begin)};
-}
-
 template <class T>
 std::optional<T> parse_real(std::string_view token) {
   T value{};
@@ -81,15 +69,11 @@ class LineParser {
         skip_list(property, line, row);
         continue;
       }
-      const auto token = take_token(line);
-      visit_scalar(property.type, [&]<class T>() {
-        const auto value = token.empty() ? std::nullopt : parse_value<T>(token);
-        if (!value) fail(row, property, token);
-        std::memcpy(out, &*value, sizeof(T));
-        out += sizeof(T);
-      });
+      const auto token = take_ply_token(line);
+      if (!parse_ply_value(token, property.type, out)) fail(row, property, token);
+      out += size_of(property.type);
     }
-    if (!take_token(line).empty()) {
+    if (!take_ply_token(line).empty()) {
       fail(row, "more values than the header has properties");
     }
     return out;
@@ -97,11 +81,11 @@ class LineParser {
 
  private:
   void skip_list(const PlyProperty& property, std::string_view& line, std::uint64_t row) const {
-    const auto token = take_token(line);
+    const auto token = take_ply_token(line);
     const auto count = token.empty() ? std::nullopt : parse_value<std::uint64_t>(token);
     if (!count) fail(row, property, token);
     for (std::uint64_t i = 0; i < *count; ++i) {
-      if (take_token(line).empty()) fail(row, property, {});
+      if (take_ply_token(line).empty()) fail(row, property, {});
     }
   }
 
@@ -125,8 +109,28 @@ class LineParser {
 
 }  // namespace
 
+std::string_view take_ply_token(std::string_view& text) {
+  const char* next = text.data();
+  const char* const end = next + text.size();
+  while (next != end && is_space(*next))
+    ++next;
+  const char* const begin = next;
+  while (next != end && !is_space(*next))
+    ++next;
+  text = {next, static_cast<std::size_t>(end - next)};
+  return {begin, static_cast<std::size_t>(next - begin)};
+}
+
+bool parse_ply_value(std::string_view token, ScalarType type, std::byte* out) {
+  return visit_scalar(type, [&]<class T>() {
+    const auto value = token.empty() ? std::nullopt : parse_value<T>(token);
+    if (value) std::memcpy(out, &*value, sizeof(T));
+    return value.has_value();
+  });
+}
+
 bool is_blank_line(std::string_view line) {
-  return take_token(line).empty();
+  return take_ply_token(line).empty();
 }
 
 void parse_ply_lines(std::string_view text, const PlyHeader& header, const PlyRowNames& names,

@@ -15,6 +15,12 @@ namespace ray {
 /// True if there is nothing but white space.
 [[nodiscard]] bool is_blank_line(std::string_view line);
 
+/// Takes the next word off `text`; empty at the end.
+[[nodiscard]] std::string_view take_ply_token(std::string_view& text);
+
+/// Writes the value of a word, in this machine's byte order, to `out`. False if it is none of that type.
+[[nodiscard]] bool parse_ply_value(std::string_view token, ScalarType type, std::byte* out);
+
 /// Parses the lines of `text` that are not blank into rows of `row_bytes` (ply_schema.h) in this machine's
 /// byte order, list properties left out. Numbers may have a plus sign, be nan or inf, and stand in any white
 /// space; whole numbers may be written as 255.0. Throws Error(file_format) that names the row, counted from

@@ -1,5 +1,6 @@
 #pragma once
-/// Pictures as plain values: `render` makes them, `io` writes them.
+/// Pictures as plain values: `render` makes them, `io` reads and writes them. Rows go from the top left;
+/// `pixels.size() == width * height`.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,11 +16,26 @@ struct Pixel {
   friend bool operator==(const Pixel&, const Pixel&) = default;
 };
 
-/// 8 bits a channel, row by row from the top left; `pixels.size() == width * height`.
+/// 8 bits a channel.
 struct Image {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<Pixel> pixels;
+};
+
+/// Linear values of any size.
+struct FloatPixel {
+  float red = 0.0F;
+  float green = 0.0F;
+  float blue = 0.0F;
+  friend bool operator==(const FloatPixel&, const FloatPixel&) = default;
+};
+
+/// For measured values rather than for looking at. It has no alpha: 0 is also where nothing is.
+struct FloatImage {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::vector<FloatPixel> pixels;
 };
 
 }  // namespace ray

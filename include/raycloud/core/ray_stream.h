@@ -18,6 +18,7 @@ struct RawChunk {
   std::vector<std::byte> bytes;
   std::uint64_t first_row = 0;  ///< in the source, counting invalid rows
   std::size_t rows = 0;
+  std::size_t source = 0;  ///< which one, where a source is made of several
 };
 
 /// Yields the rays of a cloud, in order, chunk by chunk, in bounded memory.
@@ -50,6 +51,9 @@ class RaySink {
   /// a value cannot be stored at all. Precondition: the extras are those the sink was made with, in that
   /// order.
   virtual void encode(const RayCloud& rays, RawChunk& raw) const = 0;
+
+  /// As `encode`, where nobody needs `rays` any more: a sink may take their memory instead of copying it.
+  virtual void consume(RayCloud& rays, RawChunk& raw) const { encode(rays, raw); }
 
   /// Adds an encoded piece. Called by one thread at a time, in order. Throws Error(file_access) on a full
   /// disk.

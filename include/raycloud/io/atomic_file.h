@@ -50,6 +50,10 @@ class AtomicFile {
  private:
   void open_temporary(const std::filesystem::path& real);
   void start_flush();
+  void reopen();
+  void close();
+  /// After each use: closes if the options say so.
+  void rest();
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path target_;

@@ -17,6 +17,9 @@ struct WriteOptions {
   /// Force the bytes onto the disk before the output replaces what had its name: for commands that overwrite
   /// their input, so that a power cut leaves one of the two.
   bool flush_to_disk = false;
+  /// Open the file anew for each write, so that there is no limit to how many are being written at once: for
+  /// commands that write thousands. A write costs some microseconds more: make it a large one.
+  bool close_between_writes = false;
 };
 
 }  // namespace ray

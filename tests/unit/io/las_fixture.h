@@ -1,7 +1,6 @@
 #pragma once
 // LAS files made by hand and read by LASzip's own loop: what the reader is held against.
 
-
 #include <raycloud/core/ray_cloud.h>
 #include <raycloud/core/ray_stream.h>
 #include <raycloud/exec/random.h>

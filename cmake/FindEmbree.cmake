@@ -1,0 +1,18 @@
+# Embree 4, or 3 where that is what the distribution has. Defines Embree::Embree and Embree_VERSION_MAJOR.
+foreach(Embree_VERSION_MAJOR 4 3)
+  find_path(Embree_INCLUDE_DIR embree${Embree_VERSION_MAJOR}/rtcore.h)
+  find_library(Embree_LIBRARY embree${Embree_VERSION_MAJOR})
+  if(Embree_INCLUDE_DIR AND Embree_LIBRARY)
+    break()
+  endif()
+  unset(Embree_INCLUDE_DIR CACHE)
+  unset(Embree_LIBRARY CACHE)
+endforeach()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Embree REQUIRED_VARS Embree_LIBRARY Embree_INCLUDE_DIR)
+if(Embree_FOUND AND NOT TARGET Embree::Embree)
+  add_library(Embree::Embree UNKNOWN IMPORTED)
+  set_target_properties(Embree::Embree PROPERTIES
+    IMPORTED_LOCATION ${Embree_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${Embree_INCLUDE_DIR})
+endif()
+mark_as_advanced(Embree_INCLUDE_DIR Embree_LIBRARY)
