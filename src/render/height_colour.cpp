@@ -1,5 +1,6 @@
-#include <raycloud/render/render_ends.h>
+#include <raycloud/render/height_colour.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,6 +45,13 @@ Pixel height_colour(double fraction) {
   const double chroma = std::lerp(kStops[i].chroma, kStops[i + 1].chroma, t);
   const double hue = std::lerp(kStops[i].hue_deg, kStops[i + 1].hue_deg, t) * 3.14159265358979323846 / 180.0;
   return to_pixel({std::lerp(kDark, kLight, f), chroma * std::cos(hue), chroma * std::sin(hue)});
+}
+
+std::array<Pixel, 256> height_ramp() {
+  std::array<Pixel, 256> ramp;
+  for (std::size_t i = 0; i < ramp.size(); i++)
+    ramp[i] = height_colour(static_cast<double>(i) / 255.0);
+  return ramp;
 }
 
 }  // namespace ray

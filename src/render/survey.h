@@ -1,51 +1,37 @@
 #pragma once
-/// The first pass over a cloud to be drawn: where its ends are and how to colour them.
+/// The first pass over a cloud to be drawn: where its points are and what they have in common.
 
 #include <raycloud/core/bounds.h>
-#include <raycloud/core/image.h>
 #include <raycloud/exec/stream.h>
-#include <raycloud/render/render_ends.h>
+#include <raycloud/render/render.h>
 
 #include <array>
+#include <cstdint>
+#include <vector>
 
 namespace ray {
 
-/// What the bounded ends of a cloud have in common.
+/// Calls `draw(point, colour)` for the points that a style draws: the ends of bounded rays, or for `starts`
+/// the starts of all.
+template <class Draw>
+void each_drawn_point(RenderStyle style, const RayCloud& rays, const Draw& draw) {
+  const bool starts = style == RenderStyle::starts;
+  const std::vector<Eigen::Vector3d>& points = starts ? rays.starts : rays.ends;
+  for (std::size_t i = 0; i < rays.size(); i++) {
+    if (starts || rays.bounded[i] != 0) draw(points[i], rays.colours[i]);
+  }
+}
+
+/// What the points to be drawn have in common; for the style `rays` only their bounds and number.
 struct Survey {
   Bounds bounds;
   double low = 0.0;  ///< m; the range of z without the lowest and highest 0.5 %
   double high = 0.0;
-  std::array<std::uint64_t, 256> intensities{};  ///< how many ends have each
-  std::uint64_t bounded = 0;
-  bool one_colour = true;  ///< red, green and blue are the same everywhere
-  StreamCounts counts;
+  std::array<std::uint64_t, 256> intensities{};  ///< how many points have each
+  bool one_colour = true;                        ///< red, green and blue are the same everywhere
+  StreamCounts counts;                           ///< rays_out is the number of points (or rays)
 };
 
-[[nodiscard]] Survey survey_ends(const Context& context, RaySource& source);
-
-/// How to colour an end: the rules of EndsStyle, decided once.
-class Painter {
- public:
-  Painter(EndsStyle style, const Survey& survey);
-  [[nodiscard]] Pixel colour(const Eigen::Vector3d& end, const Colour& colour) const {
-    if (by_height_) {
-      const double place = (end.z() - low_) * scale_;
-      return ramp_[static_cast<std::size_t>(place < 0.0 ? 0.0 : place < 255.0 ? place : 255.0)];
-    }
-    const unsigned shade = shades_[colour.intensity];
-    return {tint(colour.red, shade), tint(colour.green, shade), tint(colour.blue, shade), 255};
-  }
-
- private:
-  [[nodiscard]] static std::uint8_t tint(unsigned value, unsigned shade) {
-    return static_cast<std::uint8_t>((value * shade + 127) / 255);
-  }
-
-  bool by_height_;
-  double low_;
-  double scale_;  // entries of the ramp for a metre
-  std::array<Pixel, 256> ramp_;
-  std::array<std::uint8_t, 256> shades_;  // by intensity
-};
+[[nodiscard]] Survey survey_cloud(const Context& context, RaySource& source, RenderStyle style);
 
 }  // namespace ray
