@@ -3,7 +3,7 @@
 // Prints a Markdown table. Every ratio is the median of five pairs of runs taken in turn, files in the page
 // cache.
 
-#include "measure.h"
+#include "table.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,89 +12,62 @@
 
 namespace {
 
-constexpr int kRuns = 5;
-
-struct Paths {
-  std::string bin;
-  std::string big;
-  std::string work;
-  double rays = 0.0;
-  [[nodiscard]] std::string command(const std::string& words) const { return "exec " + bin + "/" + words; }
-  [[nodiscard]] std::string file(const std::string& name) const { return work + "/" + name; }
-};
-
-void row(const char* what, const bench::Result& result, double rays, const char* baseline, const char* bar,
-         bool met) {
-  char ratio[64] = "";
-  if (result.base_seconds > 0.0) {
-    std::snprintf(ratio, sizeof ratio, "%.2f (%.2f to %.2f) × %s", result.ratio, result.ratio_min,
-                  result.ratio_max, baseline);
-  }
-  std::printf("| %s | %.3f s | %.1f | %s | %.0f MB | %s | %s |\n", what, result.seconds,
-              rays / result.seconds / 1e6, ratio, result.peak_megabytes, bar, met ? "yes" : "NO");
-  std::fflush(stdout);
-}
-
-void heading() {
-  std::printf(
-      "| command | median | M rays/s | time against the baseline (min to max) | peak memory | bar | met |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
-}
+using namespace bench;
 
 void make_inputs(const Paths& p) {
-  bench::run(p.command("rayexport -q " + p.big + " " + p.file("points.laz") + " " + p.file("trajectory.txt") +
-                       " --traj_delta 0.01"));
+  run(p.command("rayexport -q " + p.big + " " + p.file("points.laz") + " " + p.file("trajectory.txt") +
+                " --traj_delta 0.01"));
 }
 
 void against_cp(const Paths& p) {
   const std::string& big = p.big;
   const std::string out = p.file("out.ply");
-  const bench::Subject cp{"exec cp " + big + " " + p.file("copy.ply"), "rm -f " + p.file("copy.ply")};
-  const auto every = bench::time_against(
-      {p.command("raydecimate -q " + big + " 10 rays -o " + out), "rm -f " + out}, cp, kRuns);
+  const Subject cp{"exec cp " + big + " " + p.file("copy.ply"), "rm -f " + p.file("copy.ply")};
+  const auto every =
+      time_against({p.command("raydecimate -q " + big + " 10 rays -o " + out), "rm -f " + out}, cp, kRuns);
   row("raydecimate 10 rays", every, p.rays, "cp", "≤ 1.6 × cp", every.ratio <= 1.6);
 
   const auto exported =
-      bench::time_against({p.command("rayexport -q " + big + " " + out + " -"), "rm -f " + out}, cp, kRuns);
+      time_against({p.command("rayexport -q " + big + " " + out + " -"), "rm -f " + out}, cp, kRuns);
   row("rayexport to PLY", exported, p.rays, "cp", "≤ 1.6 × cp", exported.ratio <= 1.6);
 
   const std::string moved = p.file("moved.ply");
-  bench::run("cp " + big + " " + moved);
-  const bench::Subject cp_sync{"cp " + big + " " + p.file("copy.ply") + " && sync " + p.file("copy.ply"),
-                               "rm -f " + p.file("copy.ply") + "; sync"};
+  run("cp " + big + " " + moved);
+  const Subject cp_sync{"cp " + big + " " + p.file("copy.ply") + " && sync " + p.file("copy.ply"),
+                        "rm -f " + p.file("copy.ply") + "; sync"};
   const auto translated =
-      bench::time_against({p.command("raytranslate -q " + moved + " 0.5,0.25,0"), "sync"}, cp_sync, kRuns);
+      time_against({p.command("raytranslate -q " + moved + " 0.5,0.25,0"), "sync"}, cp_sync, kRuns);
   row("raytranslate in place", translated, p.rays, "cp && sync", "≤ 1.6 × cp && sync",
       translated.ratio <= 1.6);
-  bench::run("rm -f " + moved + " " + out + " " + p.file("copy.ply"));
+  run("rm -f " + moved + " " + out + " " + p.file("copy.ply"));
 }
 
 void rates(const Paths& p) {
   const std::string& big = p.big;
   const std::string out = p.file("out.ply");
-  const auto info = bench::time_against({p.command("rayinfo " + big), ""}, {"exec cat " + big, ""}, kRuns);
+  const auto info = time_against({p.command("rayinfo " + big), ""}, {"exec cat " + big, ""}, kRuns);
   row("rayinfo", info, p.rays, "cat", "≥ 30 M rays/s", p.rays / info.seconds >= 30e6);
 
   const auto decimate =
-      bench::time_alone({p.command("raydecimate -q " + big + " 10 cm -o " + out), "rm -f " + out}, kRuns);
+      time_alone({p.command("raydecimate -q " + big + " 10 cm -o " + out), "rm -f " + out}, kRuns);
   row("raydecimate 10 cm", decimate, p.rays, "", "≥ 8 M rays/s", p.rays / decimate.seconds >= 8e6);
 
-  const auto render = bench::time_alone(
+  const auto render = time_alone(
       {p.command("rayrender -q " + big + " top ends -o " + p.file("out.png")), "rm -f " + p.file("out.png")},
       kRuns);
   row("rayrender top ends", render, p.rays, "", "≥ 15 M rays/s", p.rays / render.seconds >= 15e6);
-  bench::run("rm -f " + out + " " + p.file("out.png"));
+  run("rm -f " + out + " " + p.file("out.png"));
 }
 
 void laz_import(const Paths& p) {
   const std::string laz = p.file("points.laz");
   const std::string out = p.file("imported.ply");
-  const auto imported = bench::time_against(
+  const auto imported = time_against(
       {p.command("rayimport -q " + laz + " " + p.file("trajectory.txt") + " -o " + out + " 2>/dev/null"),
        "rm -f " + out},
       {"exec " + p.bin + "/laszip_loop " + laz, ""}, kRuns);
   row("rayimport LAZ", imported, p.rays, "LASzip loop", "≤ 1/1.6 of the loop", imported.ratio <= 1.0 / 1.6);
-  bench::run("rm -f " + out);
+  run("rm -f " + out);
 }
 
 void start_up(const Paths& p) {
@@ -102,7 +75,7 @@ void start_up(const Paths& p) {
   std::string which;
   for (const char* name :
        {"rayimport", "rayexport", "rayinfo", "raytranslate", "rayrotate", "raydecimate", "rayrender"}) {
-    const auto result = bench::time_alone({p.command(std::string(name) + " --version"), ""}, 21);
+    const auto result = time_alone({p.command(std::string(name) + " --version"), ""}, 21);
     if (result.seconds > slowest) which = name;
     slowest = std::max(slowest, result.seconds);
   }

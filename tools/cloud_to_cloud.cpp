@@ -24,6 +24,7 @@ void run_cloud_to_cloud(cli::Session& session, const CloudToCloud& files, const 
   const auto source = open_ray_cloud(files.input, {.will_be_replaced = files.input == files.output});
   CloudInfo info = source->info();
   info.history.push_back(session.history());
+  if (files.describe) files.describe(info);
   if (files.coordinate_step > 0.0) {
     info.coordinate_step = info.coordinate_step > 0.0 ? std::min(info.coordinate_step, files.coordinate_step)
                                                       : files.coordinate_step;

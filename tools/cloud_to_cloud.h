@@ -21,6 +21,7 @@ struct CloudToCloud {
   double coordinate_step =
       0.0;  ///< m; if > 0, single precision is left where it would lose more than half of it
   WriteOptions write = {};
+  std::function<void(CloudInfo&)> describe = {};  ///< may change what the header of the output says
 };
 
 /// Opens, writes the header (the input's, with this command added to its history), streams, finishes and

@@ -1,16 +1,84 @@
+#include "key_passes.h"
+
 #include <raycloud/core/error.h>
 #include <raycloud/filter/decimate.h>
-#include <raycloud/spatial/voxel_set.h>
+#include <raycloud/spatial/crossed_cubes.h>
 
 #include <cmath>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace ray {
 namespace {
 
+using Mask = std::vector<std::uint8_t>;
+
+/// The first ray in each cube.
+struct FirstInCube {
+  Metres width;
+  VoxelTable<> cubes = {};
+
+  [[nodiscard]] VoxelKeys keys_of(const RayCloud& rays) const { return voxel_keys(rays.ends, width); }
+  void keep(const RayCloud&, const VoxelKeys& keys, ShardRange range, Mask& mask) {
+    cubes.add(keys, range, [&](std::size_t i, NoValue, bool is_new) { mask[i] = is_new ? 1 : 0; });
+  }
+  [[nodiscard]] std::size_t memory() const { return cubes.memory(); }
+  void restrict_to(ShardRange range) { cubes.restrict_to(range); }
+  void clear() { cubes.clear(); }
+};
+
+/// The first rays in each cube.
+struct FewInCube {
+  Metres width;
+  std::uint32_t most;
+  VoxelTable<std::uint32_t> cubes = {};
+
+  [[nodiscard]] VoxelKeys keys_of(const RayCloud& rays) const { return voxel_keys(rays.ends, width); }
+  void keep(const RayCloud&, const VoxelKeys& keys, ShardRange range, Mask& mask) {
+    cubes.add(keys, range, [&](std::size_t i, std::uint32_t& count, bool) {
+      mask[i] = count < most ? 1 : 0;
+      count += mask[i];
+    });
+  }
+  [[nodiscard]] std::size_t memory() const { return cubes.memory(); }
+  void restrict_to(ShardRange range) { cubes.restrict_to(range); }
+  void clear() { cubes.clear(); }
+};
+
+/// The rays that cross a cube first.
+struct FirstThroughCube {
+  static constexpr std::size_t kMostBricks = 1 << 20;  // at a time
+  Metres width;
+  VoxelTable<std::uint64_t> bricks = {};
+
+  [[nodiscard]] CrossedCubes keys_of(const RayCloud& rays) const {
+    return crossed_cubes(rays.starts, rays.ends, width, kMostBricks);
+  }
+  void keep(const RayCloud& rays, const CrossedCubes& first, ShardRange range, Mask& mask) {
+    see(first, range, mask);
+    for (std::size_t done = first.done; done < rays.size();) {
+      const CrossedCubes more = crossed_cubes(std::span(rays.starts).subspan(done),
+                                              std::span(rays.ends).subspan(done), width, kMostBricks);
+      see(more, range, std::span(mask).subspan(done));
+      done += more.done;
+    }
+  }
+  void see(const CrossedCubes& crossed, ShardRange range, std::span<std::uint8_t> mask) {
+    bricks.add(crossed.bricks, range, [&](std::size_t i, std::uint64_t& known, bool) {
+      if ((crossed.cubes[i] & ~known) == 0) return;
+      known |= crossed.cubes[i];
+      mask[crossed.rays[i]] = 1;
+    });
+  }
+  [[nodiscard]] std::size_t memory() const { return bricks.memory(); }
+  void restrict_to(ShardRange range) { bricks.restrict_to(range); }
+  void clear() { bricks.clear(); }
+};
+
 /// The rows of `count`, the first of which is number `first` of the whole, whose number n divides.
-std::vector<std::uint8_t> every(std::uint64_t n, std::uint64_t first, std::size_t count) {
-  std::vector<std::uint8_t> mask(count, 0);
+Mask every(std::uint64_t n, std::uint64_t first, std::size_t count) {
+  Mask mask(count, 0);
   const std::uint64_t passed = first % n;
   std::uint64_t i = passed == 0 ? 0 : n - passed;
   while (i < count) {
@@ -21,16 +89,34 @@ std::vector<std::uint8_t> every(std::uint64_t n, std::uint64_t first, std::size_
   return mask;
 }
 
-}  // namespace
-
-StreamCounts decimate_voxels(const Context& context, RaySource& source, RaySink& sink, Metres width) {
+void check_width(Metres width) {
   if (!(width.value > 0.0) || !std::isfinite(width.value)) {
     throw Error(ErrorCode::usage, "the width of the cubes must be more than 0");
   }
-  VoxelSet seen;
-  return stream(
-      context, source, &sink, [&](const RayCloud& rays) { return voxel_keys(rays.ends, width); },
-      [&](RayCloud& rays, const VoxelKeys& cubes) { rays.select(seen.insert(cubes)); });
+}
+
+}  // namespace
+
+StreamCounts decimate_voxels(const Context& context, RaySource& source, RaySink& sink, Metres width) {
+  check_width(width);
+  FirstInCube rule{width};
+  return keep_by_keys(context, source, sink, rule);
+}
+
+StreamCounts decimate_to_count(const Context& context, RaySource& source, RaySink& sink, Metres width,
+                               std::uint64_t most) {
+  check_width(width);
+  if (most == 0 || most > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(ErrorCode::usage, "a cube can keep from 1 to 4294967295 points");
+  }
+  FewInCube rule{width, static_cast<std::uint32_t>(most)};
+  return keep_by_keys(context, source, sink, rule);
+}
+
+StreamCounts decimate_paths(const Context& context, RaySource& source, RaySink& sink, Metres width) {
+  check_width(width);
+  FirstThroughCube rule{width};
+  return keep_by_keys(context, source, sink, rule);
 }
 
 StreamCounts decimate_every(const Context& context, RaySource& source, RaySink& sink, std::uint64_t n) {

@@ -33,24 +33,6 @@ std::uint64_t shuffle(std::uint64_t key) {
   return key ^ (key >> 33);
 }
 
-struct Place {
-  VoxelIndex block;
-  std::uint64_t key;
-};
-
-Place place_of(const VoxelIndex& index) {
-  constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1);
-  constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-  const std::int64_t x = index.x + kHalf;
-  const std::int64_t y = index.y + kHalf;
-  const std::int64_t z = index.z + kHalf;
-  const std::uint64_t local = (static_cast<std::uint64_t>(x) & kMask) |
-                              (static_cast<std::uint64_t>(y) & kMask) << kBits |
-                              (static_cast<std::uint64_t>(z) & kMask) << (2 * kBits);
-  constexpr std::uint64_t kNeverZero = std::uint64_t{1} << 63;
-  return {{x >> kBits, y >> kBits, z >> kBits}, shuffle(local | kNeverZero)};
-}
-
 }  // namespace
 
 VoxelIndex voxel_index(const Eigen::Vector3d& point, Metres width) {
@@ -62,11 +44,24 @@ VoxelIndex voxel_index(const Eigen::Vector3d& point, Metres width) {
   return {floor_to_int(q.x()), floor_to_int(q.y()), floor_to_int(q.z())};
 }
 
+VoxelPlace voxel_place(const VoxelIndex& cube) {
+  constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1);
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+  const std::int64_t x = cube.x + kHalf;
+  const std::int64_t y = cube.y + kHalf;
+  const std::int64_t z = cube.z + kHalf;
+  const std::uint64_t local = (static_cast<std::uint64_t>(x) & kMask) |
+                              (static_cast<std::uint64_t>(y) & kMask) << kBits |
+                              (static_cast<std::uint64_t>(z) & kMask) << (2 * kBits);
+  constexpr std::uint64_t kNeverZero = std::uint64_t{1} << 63;
+  return {{x >> kBits, y >> kBits, z >> kBits}, shuffle(local | kNeverZero)};
+}
+
 VoxelKeys voxel_keys(std::span<const Eigen::Vector3d> points, Metres width) {
   VoxelKeys result;
   result.keys.resize(points.size());
   for (std::size_t i = 0; i < points.size(); i++) {
-    const Place place = place_of(voxel_index(points[i], width));
+    const VoxelPlace place = voxel_place(voxel_index(points[i], width));
     result.keys[i] = place.key;
     if (result.runs.empty() || result.runs.back().block != place.block) {
       result.runs.push_back({place.block, i});

@@ -109,6 +109,20 @@ raytranslate $1 1,2,3
 rayrotate $1 0,0,90
 raydecimate $1 10 cm
 raydecimate $1 10 rays
+raydecimate $1 10 cm 3 points
+raydecimate $1 10 cm/ray
+raydecimate $1 3 cm/m
+rayrestore $1 10 cm $1
+raysplit $1 plane 0,0,1
+raysplit $1 time 3 %
+raysplit $1 gap 1
+raysplit $1 colour
+raysplit $1 grid 1,1,1
+raycombine $1 $1
+raycombine $1 --join
+raycolour $1 time
+raycolour $1 alpha 0.5
+raypipe $1 colour height : translate 1,2,3
 rayrender $1 top ends
 END
 }

@@ -15,10 +15,16 @@ struct ListedCommand {
 inline constexpr std::array kCommands{
     ListedCommand{"rayimport", "make a ray cloud from points and what is known of the sensor"},
     ListedCommand{"rayexport", "write the points and the trajectory of a ray cloud"},
+    ListedCommand{"raycreate", "make a ray cloud of a world that is known exactly"},
     ListedCommand{"rayinfo", "what is in a ray cloud"},
     ListedCommand{"raytranslate", "move a ray cloud, in place"},
     ListedCommand{"rayrotate", "rotate a ray cloud about the origin, in place"},
     ListedCommand{"raydecimate", "thin a ray cloud"},
+    ListedCommand{"rayrestore", "apply the edits of a thinned ray cloud to the full one"},
+    ListedCommand{"raycolour", "colour a ray cloud"},
+    ListedCommand{"raypipe", "run several commands as one, without files between them"},
+    ListedCommand{"raysplit", "split a ray cloud in two, or into cells"},
+    ListedCommand{"raycombine", "put ray clouds together"},
     ListedCommand{"rayrender", "picture a ray cloud"},
 };
 

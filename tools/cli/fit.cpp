@@ -46,7 +46,7 @@ class Fitting {
       failed({.usage = usage_}, at, false);
       return false;
     }
-    if (usage[word].kind == Kind::inputs) return files_from(word, at);
+    if (is_list(usage[word])) return list_from(word, at);
     return one_from(word, at) || (usage[word].optional && from(word + 1, at));
   }
 
@@ -67,14 +67,14 @@ class Fitting {
     return good;
   }
 
-  /// As many files as can be, then fewer until the rest of the usage fits.
-  bool files_from(std::size_t word, std::size_t at) {
+  /// As many arguments as can be, then fewer until the rest of the usage fits.
+  bool list_from(std::size_t word, std::size_t at) {
     const Word& wanted = command_.usages[usage_].words[word];
     const std::size_t ranks_before = ranks_.size();
     std::size_t end = at;
     while (end < words_.size() && read(wanted, words_.subspan(end), reserved_).used > 0)
       ++end;
-    ranks_.resize(ranks_before + (end - at), Rank::file);
+    ranks_.resize(ranks_before + (end - at), is_file(wanted) ? Rank::file : Rank::text);
     failed({.usage = usage_, .word = &wanted}, end, false);
     for (; end > at; --end) {
       assigned_.push_back({&wanted, at, end - at, {}});

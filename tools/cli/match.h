@@ -36,7 +36,7 @@ class Match {
 
   /// A file, choice or text.
   [[nodiscard]] const std::string& text(std::string_view name) const;
-  /// The files of an `inputs` word; for other files, the one.
+  /// The words of an `inputs` or `texts` word; of another, the one.
   [[nodiscard]] const std::vector<std::string>& files(std::string_view name) const;
   /// The first file to read on the command line; empty if there is none.
   [[nodiscard]] const std::string& first_input() const;

@@ -38,8 +38,7 @@ void check_usage(const Command& command, std::size_t index, std::vector<std::str
 
 void check_option(const Command& command, const Option& option, std::vector<std::string>& found) {
   if (option.help.empty()) found.push_back("--" + option.name + " has no help");
-  if (option.value && option.value->kind == Kind::inputs)
-    found.push_back("--" + option.name + " takes a list");
+  if (option.value && is_list(*option.value)) found.push_back("--" + option.name + " takes a list");
   for (const std::string& name : option.usages) {
     const bool known = std::any_of(command.usages.begin(), command.usages.end(),
                                    [&](const Usage& usage) { return usage.name == name; });

@@ -170,6 +170,7 @@ Reading read(const Word& word, std::span<const std::string> arguments, const Res
     case Kind::size:
       return read_size(first);
     case Kind::text:
+    case Kind::texts:
       break;
   }
   return fits(Rank::text);

@@ -124,6 +124,10 @@ Word text(std::string name) {
   return named(Kind::text, std::move(name));
 }
 
+Word texts(std::string name) {
+  return named(Kind::texts, std::move(name));
+}
+
 Word optional(Word word) {
   word.optional = true;
   return word;
@@ -173,6 +177,10 @@ bool is_file(const Word& word) {
   return word.kind == Kind::input || word.kind == Kind::inputs || word.kind == Kind::output;
 }
 
+bool is_list(const Word& word) {
+  return word.kind == Kind::inputs || word.kind == Kind::texts;
+}
+
 std::string form(const Word& word) {
   std::string text = word.name;
   if (word.kind == Kind::choice) {
@@ -180,7 +188,7 @@ std::string form(const Word& word) {
     for (const std::string& one : word.choices)
       text += (text.empty() ? "" : "|") + one;
   }
-  if (word.kind == Kind::inputs) text += "...";
+  if (is_list(word)) text += "...";
   const std::vector<std::string> units = unit_words(word);
   if (!units.empty()) text += " " + units.front();
   return word.optional ? "[" + text + "]" : text;
@@ -216,6 +224,7 @@ std::string expectation(const Word& word) {
     case Kind::size:
       return "an amount of memory such as 4GB (" + word.name + ")";
     case Kind::text:
+    case Kind::texts:
       break;
   }
   return word.name;

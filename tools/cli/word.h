@@ -35,6 +35,7 @@ enum class Kind {
   count,
   size,
   text,
+  texts,
 };
 
 /// One word of a usage, or the value of an option. Make it with the builders below.
@@ -87,6 +88,8 @@ using Extensions = std::vector<std::string>;
 [[nodiscard]] Word size(std::string name);
 /// Any text.
 [[nodiscard]] Word text(std::string name);
+/// One or more words of any kind: all that follow.
+[[nodiscard]] Word texts(std::string name);
 /// The same word, which may be left out.
 [[nodiscard]] Word optional(Word word);
 
@@ -112,6 +115,9 @@ using Extensions = std::vector<std::string>;
 [[nodiscard]] std::string either(const std::vector<std::string>& words);
 
 [[nodiscard]] bool is_file(const Word& word);
+
+/// Whether it takes as many arguments as there are.
+[[nodiscard]] bool is_list(const Word& word);
 
 /// The plural of a unit word: rays, branches, `%`.
 [[nodiscard]] std::string plural(const std::string& unit);

@@ -53,7 +53,7 @@ StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, co
                     }});
   if (sink != nullptr) {
     stages.push_back(
-        {Mode::parallel, [&](std::size_t slot) { sink->encode(items[slot].rays, items[slot].raw); }});
+        {Mode::parallel, [&](std::size_t slot) { sink->consume(items[slot].rays, items[slot].raw); }});
     stages.push_back({Mode::ordered, [&](std::size_t slot) { sink->write(items[slot].raw); }});
   }
   if (context.progress != nullptr) context.progress->begin("rays", source.info().ray_count.value_or(0));

@@ -24,9 +24,18 @@ struct VoxelIndex {
 /// it. Throws Error(out_of_range) beyond 2^62 cubes from the origin. Precondition: width > 0.
 [[nodiscard]] VoxelIndex voxel_index(const Eigen::Vector3d& point, Metres width);
 
-/// The keys of consecutive points. Space is cut into blocks of 2^21 cubes a side, the first centred on the
+/// A cube as a block and a key. Space is cut into blocks of 2^21 cubes a side, the first centred on the
 /// origin: ±104 km at 10 cm. A key is 21 bits an axis within its block, shuffled by a one-to-one function so
-/// that its bits are as good as random; it is never 0. Nearly always one run covers everything.
+/// that its bits are as good as random; it is never 0.
+struct VoxelPlace {
+  VoxelIndex block;
+  std::uint64_t key = 0;
+};
+
+/// The place of a cube, about 3 ns. Precondition: less than 2^62 cubes from the origin.
+[[nodiscard]] VoxelPlace voxel_place(const VoxelIndex& cube);
+
+/// The places of consecutive points. Nearly always one run covers everything.
 struct VoxelKeys {
   struct Run {
     VoxelIndex block;

@@ -18,6 +18,12 @@ for out in ply laz las; do
   columns "out.$out" | cmp - expected
   raydecimate -q cloud.ply 1 ray -o "out.$out"
   columns "out.$out" | cmp - expected
+  for form in 'range 1.5' 'plane 0,0,3.5'; do
+    raysplit -q cloud.ply $form -o "side.$out"
+    raycombine -q "side.$out" "side_outside.$out" -o all.ply
+    [ "$form" = 'range 1.5' ] || raycombine -q "side.$out" "side_outside.$out" --join -o all.ply
+    columns all.ply | cmp - expected
+  done
   raytranslate -q "out.$out" 1,2,3
   rayrotate -q "out.$out" 10,20,30
   columns "out.$out" | cmp - expected

@@ -1,3 +1,4 @@
+#include "decimated.h"
 #include "support/random_cloud.h"
 
 #include <raycloud/core/error.h>
@@ -15,29 +16,10 @@
 namespace ray {
 namespace {
 
+using test::expect_however_it_runs;
 using test::random_cloud;
 using test::same_bits;
-
-/// Runs `decimate(context, source, sink)` and returns what came out.
-template <class Decimate>
-RayCloud thinned(const RayCloud& cloud, unsigned threads, std::size_t chunk_rays, const Decimate& decimate) {
-  MemorySource source(cloud, chunk_rays);
-  MemorySink sink(source.info().extras);
-  const StreamCounts counts = decimate(Context{.threads = threads}, source, sink);
-  EXPECT_EQ(counts.rays_in + counts.dropped, cloud.size());
-  EXPECT_EQ(counts.rays_out, sink.cloud().size());
-  return sink.cloud();
-}
-
-template <class Decimate>
-void expect_for_all_threads_and_chunks(const RayCloud& cloud, const RayCloud& expected,
-                                       const Decimate& decimate) {
-  for (const unsigned threads : {1U, 2U, 3U, 8U}) {
-    for (const std::size_t chunk : {1UL, 7UL, 1000000UL}) {
-      RC_ASSERT(same_bits(thinned(cloud, threads, chunk, decimate), expected));
-    }
-  }
-}
+using test::thinned;
 
 auto by_width(double width) {
   return [width](const Context& context, RaySource& source, RaySink& sink) {
@@ -73,22 +55,22 @@ RC_GTEST_PROP(DecimateVoxels, KeepsTheFirstRayOfEveryCubeAndAllItsColumns, ()) {
   for (std::size_t i = 0; i < cloud.size(); i += 3) {  // some exactly on borders
     cloud.ends[i] = (cloud.ends[i] / width).array().round() * width;
   }
-  expect_for_all_threads_and_chunks(cloud, first_in_each_cube(cloud, width), by_width(width));
+  expect_however_it_runs(cloud, first_in_each_cube(cloud, width), by_width(width));
 }
 
 RC_GTEST_PROP(DecimateVoxels, TwiceIsOnce, ()) {
   const RayCloud cloud =
       random_cloud(*rc::gen::arbitrary<std::uint64_t>(), {.rays = 300, .half_extent = 2.0});
-  const RayCloud once = thinned(cloud, 2, 64, by_width(0.7));
+  const RayCloud once = thinned(cloud, {.threads = 2}, 64, by_width(0.7));
   RC_ASSERT(once.size() < cloud.size());
-  RC_ASSERT(same_bits(thinned(once, 2, 64, by_width(0.7)), once));
+  RC_ASSERT(same_bits(thinned(once, {.threads = 2}, 64, by_width(0.7)), once));
 }
 
 TEST(DecimateVoxels, EndsOfUnboundedRaysCountAsAnyOther) {
   RayCloud cloud = random_cloud(1, {.rays = 3});
   cloud.ends = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}, {-0.1, 0.1, 0.1}};
   cloud.bounded = {0, 1, 0};
-  const RayCloud out = thinned(cloud, 1, 10, by_width(1.0));
+  const RayCloud out = thinned(cloud, {.threads = 1}, 10, by_width(1.0));
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out.ends[0], cloud.ends[0]);
   EXPECT_EQ(out.ends[1], cloud.ends[2]);
@@ -104,7 +86,7 @@ RC_GTEST_PROP(DecimateEvery, KeepsRaysWhoseNumberIsAMultiple, ()) {
   for (std::size_t i = 0; i < mask.size(); i++)
     mask[i] = i % n == 0 ? 1 : 0;
   expected.select(mask);
-  expect_for_all_threads_and_chunks(cloud, expected, by_number(n));
+  expect_however_it_runs(cloud, expected, by_number(n));
 }
 
 TEST(DecimateEvery, CountsValidRaysOnly) {
@@ -112,7 +94,7 @@ TEST(DecimateEvery, CountsValidRaysOnly) {
   cloud.times[0] = std::numeric_limits<double>::quiet_NaN();
   cloud.ends[4].x() = std::numeric_limits<double>::infinity();
   for (const std::size_t chunk : {1UL, 3UL, 100UL}) {
-    const RayCloud out = thinned(cloud, 2, chunk, by_number(3));  // of 1 2 3 5 6 7 8 9
+    const RayCloud out = thinned(cloud, {.threads = 2}, chunk, by_number(3));  // of 1 2 3 5 6 7 8 9
     ASSERT_EQ(out.size(), 3U);
     EXPECT_EQ(out.ends[0], cloud.ends[1]);
     EXPECT_EQ(out.ends[1], cloud.ends[5]);

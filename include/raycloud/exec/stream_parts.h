@@ -1,0 +1,67 @@
+#pragma once
+/// The streaming shape with several sinks: chunks flow from a RaySource through a computation that sorts
+/// their rays into parts, and each part flows on to a sink of its own.
+
+#include <raycloud/exec/stream.h>
+
+#include <utility>
+#include <vector>
+
+namespace ray {
+
+/// Rays on their way to one sink. Kept from chunk to chunk, so that what `rays` and `raw` have allocated is
+/// used again.
+struct StreamPart {
+  RaySink* sink = nullptr;
+  RayCloud rays;
+  RawChunk raw;
+};
+
+/// For each chunk: `map(rays, parts)` on any thread, which returns a value; then, in file order and one at a
+/// time, `fold(value, parts)`; then the sink of every part encodes on any thread and writes in order, the
+/// parts of a chunk one after the other. `parts` holds what an earlier chunk left there: both functions must
+/// set what they use. Does not finish the sinks. Memory: pipeline_slots(context) chunks with their parts.
+template <class Map, class Fold>
+StreamCounts stream_parts(const Context& context, RaySource& source, const Map& map, const Fold& fold) {
+  using Value = decltype(map(std::declval<const RayCloud&>(), std::declval<std::vector<StreamPart>&>()));
+  struct Item {
+    RawChunk raw;
+    RayCloud rays;
+    Value value{};
+    std::vector<StreamPart> parts;
+    std::size_t dropped = 0;
+  };
+  std::vector<Item> items(pipeline_slots(context));
+  StreamCounts counts;
+  using Mode = PipelineStage::Mode;
+  std::vector<PipelineStage> stages;
+  stages.push_back({Mode::parallel, [&](std::size_t slot) {
+                      Item& item = items[slot];
+                      item.dropped = source.decode(item.raw, item.rays);
+                      item.value = map(std::as_const(item.rays), item.parts);
+                    }});
+  stages.push_back({Mode::ordered, [&](std::size_t slot) {
+                      Item& item = items[slot];
+                      counts.rays_in += item.rays.size();
+                      counts.dropped += item.dropped;
+                      fold(item.value, item.parts);
+                      for (const StreamPart& part : item.parts)
+                        counts.rays_out += part.rays.size();
+                      if (context.progress != nullptr) context.progress->advance(item.raw.rows);
+                    }});
+  stages.push_back({Mode::parallel, [&](std::size_t slot) {
+                      for (StreamPart& part : items[slot].parts)
+                        part.sink->consume(part.rays, part.raw);
+                    }});
+  stages.push_back({Mode::ordered, [&](std::size_t slot) {
+                      for (const StreamPart& part : items[slot].parts)
+                        part.sink->write(part.raw);
+                    }});
+  if (context.progress != nullptr) context.progress->begin("rays", source.info().ray_count.value_or(0));
+  pipeline(
+      context, items.size(), [&](std::size_t slot) { return source.fetch(items[slot].raw); }, stages);
+  if (context.progress != nullptr) context.progress->end();
+  return counts;
+}
+
+}  // namespace ray

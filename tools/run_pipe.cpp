@@ -1,0 +1,375 @@
+#include "pipe_steps.h"
+
+#include <raycloud/core/error.h>
+#include <raycloud/io/ply_channel.h>
+#include <raycloud/io/ray_cloud_file.h>
+
+#include <algorithm>
+#include <deque>
+#include <exception>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace ray::tools {
+namespace {
+
+using std::filesystem::path;
+
+/// Takes what goes nowhere.
+class NoSink final : public RaySink {
+ public:
+  void encode(const RayCloud& rays, RawChunk& raw) const override { raw.rows = rays.size(); }
+  void write(const RawChunk&) override {}
+  void finish() override {}
+};
+
+/// A file that is gone when this is.
+class PassingFile {
+ public:
+  explicit PassingFile(path file) : file_(std::move(file)) {}
+  ~PassingFile() {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+  }
+  PassingFile(const PassingFile&) = delete;
+  PassingFile& operator=(const PassingFile&) = delete;
+  [[nodiscard]] const path& file() const { return file_; }
+
+ private:
+  path file_;
+};
+
+/// The one chunk that it was made with, taken out by the reader.
+class ChunkSource final : public RaySource {
+ public:
+  ChunkSource(const CloudInfo& info, RayCloud& chunk) : info_(info), chunk_(chunk) {}
+  const CloudInfo& info() const override { return info_; }
+  bool fetch(RawChunk& raw) override {
+    raw.rows = chunk_.size();
+    return !std::exchange(taken_, true);
+  }
+  std::size_t decode(const RawChunk&, RayCloud& rays) const override {
+    std::swap(rays, chunk_);
+    return 0;
+  }
+  void rewind() override { throw CannotRewind(); }
+
+ private:
+  const CloudInfo& info_;
+  RayCloud& chunk_;
+  bool taken_ = false;
+};
+
+/// Keeps what it is given. Only for one chunk.
+class ChunkSink final : public RaySink {
+ public:
+  explicit ChunkSink(RayCloud& chunk) : chunk_(chunk) {}
+  void encode(const RayCloud& rays, RawChunk& raw) const override {
+    chunk_ = rays;
+    raw.rows = rays.size();
+  }
+  void consume(RayCloud& rays, RawChunk& raw) const override {
+    raw.rows = rays.size();
+    std::swap(chunk_, rays);
+  }
+  void write(const RawChunk&) override {}
+  void finish() override {}
+
+ private:
+  RayCloud& chunk_;
+};
+
+/// What a step that looks at one ray at a time makes of a source: each chunk goes through the step by itself,
+/// where it is decoded, so such steps cost neither a thread nor a channel.
+class SteppedSource final : public RaySource {
+ public:
+  SteppedSource(std::unique_ptr<RaySource> source, const PipeStep& step, OutputPrecision& precision)
+      : source_(std::move(source)), step_(step), precision_(precision) {
+    RayCloud none;
+    none.set_schema(source_->info().extras);
+    static_cast<void>(run(none, [&](const CloudInfo& given) {
+      CloudInfo info = precision_.widened(step_.output, given);
+      info.history.push_back(step_.match.history());
+      mirror_.emplace(info);
+    }));
+    info_ = mirror_->info();
+  }
+
+  const CloudInfo& info() const override { return info_; }
+  bool fetch(RawChunk& raw) override { return source_->fetch(raw); }
+
+  std::size_t decode(const RawChunk& raw, RayCloud& rays) const override {
+    const std::size_t dropped = source_->decode(raw, rays);
+    const StepReport part = run(rays, [](const CloudInfo&) {});
+    try {
+      mirror_->reflect(rays);
+    } catch (const PrecisionLoss&) {
+      precision_.lost(step_.output);
+      throw;
+    }
+    const std::lock_guard lock(mutex_);
+    report_.counts.rays_in += part.counts.rays_in;
+    report_.counts.rays_out += part.counts.rays_out;
+    report_.counts.dropped += dropped;
+    report_.rays_out.resize(part.rays_out.size());
+    for (std::size_t i = 0; i < part.rays_out.size(); ++i)
+      report_.rays_out[i] += part.rays_out[i];
+    return 0;
+  }
+
+  void rewind() override {
+    source_->rewind();
+    report_ = {};
+  }
+
+  [[nodiscard]] const StepReport& report() const { return report_; }
+
+ private:
+  /// The step on one chunk, whose place its output takes; `tell` hears what it says of the cloud.
+  template <class Tell>
+  StepReport run(RayCloud& rays, const Tell& tell) const {
+    RayCloud out;
+    ChunkSource chunk(source_->info(), rays);
+    ChunkSink sink(out);
+    NoSink none;
+    const StepReport report = step_.step->run(step_.match, {.threads = 1}, chunk,
+                                              [&](std::size_t output, const CloudInfo& info) -> RaySink& {
+                                                if (output != step_.output) return none;
+                                                tell(info);
+                                                return sink;
+                                              });
+    rays = std::move(out);
+    return report;
+  }
+
+  std::unique_ptr<RaySource> source_;
+  const PipeStep& step_;
+  OutputPrecision& precision_;
+  std::optional<PlyMirror> mirror_;
+  CloudInfo info_;
+  mutable std::mutex mutex_;
+  mutable StepReport report_;
+};
+
+/// A source that knows how many rays it has, as a file would: they are counted first if they must be.
+class CountedSource final : public RaySource {
+ public:
+  CountedSource(const Context& context, RaySource& source, bool needs_count)
+      : source_(source), info_(source.info()) {
+    if (!needs_count || info_.ray_count) return;
+    info_.ray_count = stream(
+                          context, source, nullptr, [](const RayCloud&) { return Nothing{}; },
+                          [](const RayCloud&, Nothing) {})
+                          .rays_in;
+    source.rewind();
+  }
+  const CloudInfo& info() const override { return info_; }
+  bool fetch(RawChunk& raw) override { return source_.fetch(raw); }
+  std::size_t decode(const RawChunk& raw, RayCloud& rays) const override { return source_.decode(raw, rays); }
+  void rewind() override { source_.rewind(); }
+
+ private:
+  RaySource& source_;
+  CloudInfo info_;
+};
+
+/// What the steps have taught by failing; the pipe then runs again from the last file.
+struct Lessons {
+  explicit Lessons(std::span<const PipeStep> steps) : reads_twice(steps.size(), false) {
+    for (const PipeStep& step : steps)
+      precision.emplace_back(step.step->outputs.size());
+  }
+  std::vector<bool> reads_twice;
+  std::deque<OutputPrecision> precision;  // of each step
+};
+
+enum class Ending { done, precision_lost, cannot_rewind, failed, given_up };
+
+/// Steps `first` to `last` (excluded), from a file to a file.
+class Section {
+ public:
+  Section(const Context& context, std::span<const PipeStep> steps, Lessons& lessons, std::size_t first,
+          std::size_t last)
+      : context_(context), steps_(steps), lessons_(lessons), first_(first), reports_(last - first) {
+    std::size_t begin = first;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto by_ray = steps[i].step->by_ray;
+      if (i + 1 < last && by_ray != nullptr && by_ray(steps[i].match)) continue;
+      stages_.emplace_back().first = begin;
+      stages_.back().driver = i;
+      begin = i + 1;
+    }
+  }
+
+  /// True when done, with the reports; false when it should be tried again. Throws what cannot be mended.
+  bool run(const path& input, const path& output) {
+    stages_.front().source.set_value(open_ray_cloud(input));
+    std::vector<std::thread> threads;
+    for (std::size_t i = 1; i < stages_.size(); ++i)
+      threads.emplace_back([this, i, &output] { run_guarded(i, output); });
+    run_guarded(0, output);
+    for (std::thread& thread : threads)
+      thread.join();
+    return judge();
+  }
+
+  [[nodiscard]] const std::vector<StepReport>& reports() const { return reports_; }
+
+ private:
+  /// What runs on one thread: a step that drives, and before it those that work ray by ray where it reads.
+  struct Stage {
+    std::size_t first = 0;
+    std::size_t driver = 0;
+    std::promise<std::unique_ptr<RaySource>> source;
+    std::exception_ptr error;
+  };
+
+  void run_guarded(std::size_t i, const path& output) {
+    try {
+      run_one(i, output);
+    } catch (...) {
+      stages_[i].error = std::current_exception();
+      if (i + 1 == stages_.size()) return;
+      try {  // the next one may still wait for what this one was to make
+        stages_[i + 1].source.set_exception(stages_[i].error);
+      } catch (const std::future_error&) {
+        // It has it.
+      }
+    }
+  }
+
+  void run_one(std::size_t i, const path& output) {
+    const std::size_t driver = stages_[i].driver;
+    std::unique_ptr<RaySource> source = take_source(i);
+    std::vector<const SteppedSource*> stepped;
+    for (std::size_t one = stages_[i].first; one < driver; ++one) {
+      auto next = std::make_unique<SteppedSource>(std::move(source), steps_[one], lessons_.precision[one]);
+      stepped.push_back(next.get());
+      source = std::move(next);
+    }
+    // One of them speaks for all.
+    Context context = context_;
+    if (i > 0) context.progress = nullptr;
+    reports_[driver - first_] = drive(context, i, *source, output);
+    for (std::size_t one = 0; one < stepped.size(); ++one)
+      reports_[stages_[i].first + one - first_] = stepped[one]->report();
+  }
+
+  StepReport drive(const Context& context, std::size_t i, RaySource& source, const path& output) {
+    const PipeStep& step = steps_[stages_[i].driver];
+    OutputPrecision& precision = lessons_.precision[stages_[i].driver];
+    std::vector<std::unique_ptr<RaySink>> sinks(step.step->outputs.size());
+    const SinkMaker make = [&](std::size_t number, const CloudInfo& given) -> RaySink& {
+      CloudInfo info = precision.widened(number, given);
+      info.history.push_back(step.match.history());
+      if (number == step.output)
+        sinks[number] = precision.watch(number, next_sink(i, info, output));
+      else
+        sinks[number] = std::make_unique<NoSink>();
+      return *sinks[number];
+    };
+    CountedSource counted(context, source, step.step->needs_count);
+    StepReport report = step.step->run(step.match, context, counted, make);
+    sinks[step.output]->finish();
+    return report;
+  }
+
+  std::unique_ptr<RaySource> take_source(std::size_t i) {
+    try {
+      return stages_[i].source.get_future().get();
+    } catch (...) {
+      // The one before failed and says so itself.
+      throw Error(ErrorCode::cancelled, "the step before failed");
+    }
+  }
+
+  std::unique_ptr<RaySink> next_sink(std::size_t i, const CloudInfo& info, const path& output) {
+    if (i + 1 == stages_.size()) return create_ray_cloud(output, info);
+    PlyChannel channel = make_ply_channel(info);
+    stages_[i + 1].source.set_value(std::move(channel.source));
+    return std::move(channel.sink);
+  }
+
+  static Ending ending_of(const std::exception_ptr& error) {
+    if (!error) return Ending::done;
+    try {
+      std::rethrow_exception(error);
+    } catch (const PrecisionLoss&) {
+      return Ending::precision_lost;
+    } catch (const CannotRewind&) {
+      return Ending::cannot_rewind;
+    } catch (const Error& given) {
+      return given.code() == ErrorCode::cancelled ? Ending::given_up : Ending::failed;
+    } catch (...) {
+      return Ending::failed;
+    }
+  }
+
+  bool judge() {
+    bool again = false;
+    std::exception_ptr fatal;
+    std::exception_ptr cancelled;
+    for (const Stage& stage : stages_) {
+      const Ending ending = ending_of(stage.error);
+      if (ending == Ending::cannot_rewind) lessons_.reads_twice[stage.first] = true;
+      again = again || ending == Ending::cannot_rewind || ending == Ending::precision_lost;
+      if (ending == Ending::failed && !fatal) fatal = stage.error;
+      if (ending == Ending::given_up && !cancelled) cancelled = stage.error;
+    }
+    if (fatal) std::rethrow_exception(fatal);
+    check_cancelled(context_);
+    if (!again && cancelled) std::rethrow_exception(cancelled);
+    return !again;
+  }
+
+  const Context& context_;
+  std::span<const PipeStep> steps_;
+  Lessons& lessons_;
+  std::size_t first_;
+  std::vector<StepReport> reports_;
+  std::deque<Stage> stages_;
+};
+
+/// The first step from `first` on that must have a file before it, or the number of steps.
+std::size_t section_end(const Lessons& lessons, std::size_t first) {
+  const auto begin = lessons.reads_twice.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto next = std::find(begin + 1, lessons.reads_twice.end(), true);
+  return static_cast<std::size_t>(next - lessons.reads_twice.begin());
+}
+
+path passing_name(const path& output, std::size_t step) {
+  return output.parent_path() /
+         ("." + output.stem().string() + "_before_step_" + std::to_string(step + 1) + ".ply");
+}
+
+}  // namespace
+
+PipeReport run_pipe(const Context& context, const path& input, std::span<const PipeStep> steps,
+                    const path& output) {
+  Lessons lessons(steps);
+  PipeReport report;
+  std::deque<PassingFile> passing;
+  path from = input;
+  std::size_t first = 0;
+  while (first < steps.size()) {
+    const std::size_t last = section_end(lessons, first);
+    const bool whole = last == steps.size();
+    if (!whole) passing.emplace_back(passing_name(output, last));
+    const path to = whole ? output : passing.back().file();
+    Section section(context, steps, lessons, first, last);
+    if (!section.run(from, to)) {
+      if (!whole) passing.pop_back();
+      continue;
+    }
+    report.steps.insert(report.steps.end(), section.reports().begin(), section.reports().end());
+    from = to;
+    first = last;
+  }
+  return report;
+}
+
+}  // namespace ray::tools

@@ -1,0 +1,12 @@
+#include "steps.h"
+
+#include <array>
+
+namespace ray::tools {
+
+std::span<const Step* const> all_steps() {
+  static const std::array kSteps{&kDecimateStep, &kSplitStep, &kTranslateStep, &kRotateStep, &kColourStep};
+  return kSteps;
+}
+
+}  // namespace ray::tools
