@@ -3,7 +3,6 @@
 #include <raycloud/core/error.h>
 #include <raycloud/io/ray_cloud_file.h>
 
-#include <algorithm>
 #include <string>
 
 namespace ray::tools {
@@ -12,7 +11,7 @@ namespace {
 
 StreamCounts stream_once(const CloudToCloud& files, const CloudInfo& info, RaySource& source,
                          const StreamingCall& call) {
-  const auto sink = create_ray_cloud(files.output, info, files.write);
+  const auto sink = create_ray_cloud(files.output, info);
   const StreamCounts counts = call(source, *sink);
   sink->finish();
   return counts;
@@ -21,14 +20,10 @@ StreamCounts stream_once(const CloudToCloud& files, const CloudInfo& info, RaySo
 }  // namespace
 
 void run_cloud_to_cloud(cli::Session& session, const CloudToCloud& files, const StreamingCall& call) {
-  const auto source = open_ray_cloud(files.input, {.will_be_replaced = files.input == files.output});
+  const auto source = open_ray_cloud(files.input);
   CloudInfo info = source->info();
   info.history.push_back(session.history());
   if (files.describe) files.describe(info);
-  if (files.coordinate_step > 0.0) {
-    info.coordinate_step = info.coordinate_step > 0.0 ? std::min(info.coordinate_step, files.coordinate_step)
-                                                      : files.coordinate_step;
-  }
   StreamCounts counts;
   try {
     counts = stream_once(files, info, *source, call);

@@ -1,11 +1,11 @@
 #pragma once
-/// What most commands are: one ray cloud in, one out, through one streaming call of the library.
+/// What commands are that are no step (step.h): one ray cloud in, one out, through one streaming call of the
+/// library.
 
 #include "cli/session.h"
 
 #include <raycloud/core/ray_stream.h>
 #include <raycloud/exec/stream.h>
-#include <raycloud/io/file_options.h>
 
 #include <filesystem>
 #include <functional>
@@ -17,10 +17,7 @@ using StreamingCall = std::function<StreamCounts(RaySource&, RaySink&)>;
 
 struct CloudToCloud {
   std::filesystem::path input;
-  std::filesystem::path output;  ///< may be the input: it is replaced when the new cloud is complete
-  double coordinate_step =
-      0.0;  ///< m; if > 0, single precision is left where it would lose more than half of it
-  WriteOptions write = {};
+  std::filesystem::path output;
   std::function<void(CloudInfo&)> describe = {};  ///< may change what the header of the output says
 };
 
