@@ -18,5 +18,6 @@ function(raycloud_room name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(raycloud_${name} PUBLIC ${ROOM_LINKS}
                         PRIVATE ${ROOM_PRIVATE} $<BUILD_INTERFACE:raycloud_build>)
+  raycloud_precompiled(raycloud_${name} library)
   set_property(GLOBAL APPEND PROPERTY RAYCLOUD_ROOMS ${name})
 endfunction()

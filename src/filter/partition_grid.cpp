@@ -1,5 +1,6 @@
 #include "convex_region.h"
 #include "part_sorter.h"
+#include "require.h"
 
 #include <raycloud/core/error.h>
 

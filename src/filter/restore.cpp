@@ -1,6 +1,7 @@
 #include "displacements.h"
 #include "ray_groups.h"
 #include "ray_pairs.h"
+#include "ray_pieces.h"
 #include "row_bits.h"
 
 #include <raycloud/core/error.h>
@@ -119,16 +120,6 @@ namespace {
 
 bool same_place(const RayCloud& a, std::size_t i, const RayCloud& b, std::size_t j) {
   return a.ends[i] == b.ends[j] && a.starts[i] == b.starts[j];
-}
-
-void append_rows(RayCloud& to, const RayCloud& from, std::size_t begin, std::size_t end) {
-  if (begin == 0 && end == from.size()) return to.append(from);
-  std::vector<std::uint8_t> mask(from.size());
-  std::fill(mask.begin() + static_cast<std::ptrdiff_t>(begin),
-            mask.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
-  RayCloud rows = from;
-  rows.select(mask);
-  to.append(rows);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "require.h"
 #include "whole_rays.h"
 
 #include <raycloud/core/error.h>
@@ -13,10 +14,6 @@ namespace ray {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-void require(bool sensible, const char* message) {
-  if (!sensible) throw Error(ErrorCode::usage, message);
-}
 
 double squared_length(const Eigen::Vector3d& v, const char* message) {
   const double squared = v.squaredNorm();

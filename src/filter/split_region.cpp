@@ -1,5 +1,6 @@
 #include "convex_region.h"
 #include "ray_pieces.h"
+#include "require.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/filter/split.h>
@@ -40,10 +41,6 @@ class RegionRule final : public SplitRule {
   Region region_;
   Precision stored_;
 };
-
-void require(bool sensible, const char* message) {
-  if (!sensible) throw Error(ErrorCode::usage, message);
-}
 
 }  // namespace
 

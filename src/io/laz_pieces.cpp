@@ -9,7 +9,7 @@ namespace ray {
 namespace {
 
 constexpr std::uint64_t kMostRows = 65536;
-constexpr std::uint64_t kMostBytes = 64 << 20;  ///< of the records of a piece
+constexpr std::uint64_t kMostPieceBytes = 64 << 20;  ///< of the records of a piece
 
 struct CopcNode {
   std::uint64_t at;
@@ -68,7 +68,7 @@ std::optional<std::uint64_t> laz_tabled_chunks(const InputFile& input, const Las
 
 LazPieces::LazPieces(const InputFile& input, const LasHeader& header, std::size_t chunk_rays)
     : point_count_(header.point_count) {
-  const std::uint64_t fitting = kMostBytes / header.record_length;
+  const std::uint64_t fitting = kMostPieceBytes / header.record_length;
   piece_rows_ = std::clamp<std::uint64_t>(chunk_rays, 1, fitting);
   most_rows_ = std::max(piece_rows_, std::min(kMostRows, fitting));
   const auto chunks = laz_tabled_chunks(input, header);

@@ -11,9 +11,9 @@
 namespace ray {
 namespace {
 
-class Reader {
+class ObjReader {
  public:
-  explicit Reader(const std::filesystem::path& path) : file_(path) {}
+  explicit ObjReader(const std::filesystem::path& path) : file_(path) {}
 
   Mesh run() {
     text::LineReader reader(file_);
@@ -95,7 +95,7 @@ class Reader {
 }  // namespace
 
 Mesh read_obj_mesh(const std::filesystem::path& path) {
-  return Reader(path).run();
+  return ObjReader(path).run();
 }
 
 void write_obj_mesh(const std::filesystem::path& path, const Mesh& mesh, const WriteOptions& options) {

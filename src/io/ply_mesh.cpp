@@ -21,9 +21,9 @@ bool is_indices(const PlyProperty& property) {
   return property.list_count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-class Reader {
+class PlyMeshReader {
  public:
-  explicit Reader(const std::filesystem::path& path)
+  explicit PlyMeshReader(const std::filesystem::path& path)
       : file_(path), header_(read_ply_header(file_)), values_(file_, header_) {
     const auto found =
         std::find_if(header_.elements.begin(), header_.elements.end(), [](const auto& element) {
@@ -208,7 +208,7 @@ std::string header_of(const Mesh& mesh, const std::filesystem::path& path, std::
 }  // namespace
 
 Mesh read_ply_mesh(const std::filesystem::path& path) {
-  return Reader(path).run();
+  return PlyMeshReader(path).run();
 }
 
 void write_ply_mesh(const std::filesystem::path& path, const Mesh& mesh, const WriteOptions& options) {

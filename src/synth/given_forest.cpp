@@ -57,15 +57,15 @@ double height_between(const std::vector<Eigen::Vector3d>& feet, double x, double
 }
 
 Mesh ground_under(const std::vector<Eigen::Vector3d>& feet) {
-  constexpr double kRim = 12.0;
+  constexpr double kRimOfTrees = 12.0;
   constexpr double kCells = 300.0;  // at most, a side
   Area area{feet.front().head<2>(), feet.front().head<2>()};
   for (const Eigen::Vector3d& foot : feet) {
     area.low = area.low.cwiseMin(foot.head<2>());
     area.high = area.high.cwiseMax(foot.head<2>());
   }
-  area.low.array() -= kRim;
-  area.high.array() += kRim;
+  area.low.array() -= kRimOfTrees;
+  area.high.array() += kRimOfTrees;
   const double cell = std::max(0.5, area.size().maxCoeff() / kCells);
   return height_field(area, cell, [&](double x, double y) { return height_between(feet, x, y); });
 }

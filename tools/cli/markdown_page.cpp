@@ -42,7 +42,7 @@ std::string options(const Command& command) {
   return out + "\n";
 }
 
-std::string see_also(const Command& command) {
+std::string links_to_others(const Command& command) {
   std::string out;
   for (const std::string& name : command.see_also) {
     out += (out.empty() ? "See also " : ", ") + ("[" + name + "](" + name + ".md)");
@@ -58,7 +58,7 @@ std::string markdown_page(const Command& command) {
   if (!command.writes.empty()) page += "Writes " + command.writes + ".\n\n";
   page += options(command);
   if (!command.memory.empty()) page += "## Memory\n\n" + prose(command.memory);
-  page += see_also(command);
+  page += links_to_others(command);
   while (page.ends_with("\n\n"))
     page.pop_back();
   return page;

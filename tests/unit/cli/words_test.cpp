@@ -25,10 +25,10 @@ Command with(Word word) {
           .usages = {{.words = {std::move(word)}, .help = "", .example = ""}}};
 }
 
-using Line = std::vector<std::string>;
+using Words = std::vector<std::string>;
 
 /// The numbers a line gives for the word named N, or nothing if it is refused.
-std::optional<std::vector<double>> numbers(const Word& word, const Line& line) {
+std::optional<std::vector<double>> numbers(const Word& word, const Words& line) {
   const Command command = with(word);
   try {
     return parse(command, line).components("N");
@@ -38,11 +38,11 @@ std::optional<std::vector<double>> numbers(const Word& word, const Line& line) {
   }
 }
 
-bool takes(const Word& word, const Line& line) {
+bool takes(const Word& word, const Words& line) {
   return numbers(word, line).has_value();
 }
 
-double one(const Word& word, const Line& line) {
+double one(const Word& word, const Words& line) {
   const auto found = numbers(word, line);
   return found && found->size() == 1 ? found->front() : -12345.0;
 }
@@ -77,7 +77,7 @@ TEST(words, integer) {
 RC_GTEST_PROP(words, every_integer_comes_back, ()) {
   const auto value = *rc::gen::inRange<std::int64_t>(-(std::int64_t{1} << 53), std::int64_t{1} << 53);
   const Command command = with(integer("N"));
-  RC_ASSERT(parse(command, Line{std::to_string(value)}).integer("N") == value);
+  RC_ASSERT(parse(command, Words{std::to_string(value)}).integer("N") == value);
 }
 
 TEST(words, vector) {
@@ -102,13 +102,14 @@ TEST(words, vector) {
 }
 
 TEST(words, a_length_is_the_same_in_every_unit) {
-  for (const Line& line :
-       {Line{"4", "cm"}, Line{"40", "mm"}, Line{"0.04", "m"}, Line{"4cm"}, Line{"40mm"}, Line{"0.04m"}}) {
+  for (const Words& line : {Words{"4", "cm"}, Words{"40", "mm"}, Words{"0.04", "m"}, Words{"4cm"},
+                            Words{"40mm"}, Words{"0.04m"}}) {
     EXPECT_EQ(one(length("N"), line), 0.04) << line.front();
   }
-  for (const Line& line : {Line{"4"}, Line{"4", "km"}, Line{"4", "CM"}, Line{"0", "cm"}, Line{"-4", "cm"},
-                           Line{"cm"}, Line{"cm", "4"}, Line{"4cmx"}, Line{"4", "cm", "x"},
-                           Line{"4", "cm/ray"}, Line{"4", ""}, Line{"nan", "cm"}}) {
+  for (const Words& line :
+       {Words{"4"}, Words{"4", "km"}, Words{"4", "CM"}, Words{"0", "cm"}, Words{"-4", "cm"}, Words{"cm"},
+        Words{"cm", "4"}, Words{"4cmx"}, Words{"4", "cm", "x"}, Words{"4", "cm/ray"}, Words{"4", ""},
+        Words{"nan", "cm"}}) {
     EXPECT_FALSE(takes(length("N"), line)) << testing::PrintToString(line);
   }
 }
@@ -125,8 +126,8 @@ TEST(words, counts_are_singular_or_plural) {
   EXPECT_EQ(one(count("N", "ray"), {"10", "rays"}), 10.0);
   EXPECT_EQ(one(count("N", "ray"), {"1", "ray"}), 1.0);
   EXPECT_EQ(one(count("N", "branch"), {"3", "branches"}), 3.0);
-  for (const Line& line : {Line{"0", "rays"}, Line{"-1", "rays"}, Line{"2.5", "rays"}, Line{"10"},
-                           Line{"10", "rayss"}, Line{"10", "points"}}) {
+  for (const Words& line : {Words{"0", "rays"}, Words{"-1", "rays"}, Words{"2.5", "rays"}, Words{"10"},
+                            Words{"10", "rayss"}, Words{"10", "points"}}) {
     EXPECT_FALSE(takes(count("N", "ray"), line)) << testing::PrintToString(line);
   }
   EXPECT_EQ(one(quantity("N", "sigma"), {"2.5", "sigmas"}), 2.5);
@@ -154,10 +155,10 @@ TEST(words, files_are_any_name_but_the_words_of_the_command_and_vectors) {
                         .usages = {{.words = {input("A"), literal("box")}, .help = "", .example = ""},
                                    {.words = {input("A"), count("N", "ray")}, .help = "", .example = ""}}};
   for (const char* good : {"a.ply", "./box", "b ox.las", "-", "12", "3d.ply", "1,a.ply", "été.ply"}) {
-    EXPECT_EQ(parse(command, Line{good, "box"}).text("A"), good);
+    EXPECT_EQ(parse(command, Words{good, "box"}).text("A"), good);
   }
   for (const char* bad : {"box", "ray", "rays", "1,2,3", "-1,2", ""}) {
-    EXPECT_THROW(static_cast<void>(parse(command, Line{bad, "box"})), ray::Error) << bad;
+    EXPECT_THROW(static_cast<void>(parse(command, Words{bad, "box"})), ray::Error) << bad;
   }
 }
 
@@ -168,14 +169,14 @@ TEST(words, lists_leave_words_for_the_rest) {
                         .usages = {{.words = {inputs("FILES"), output("LAST"), optional(count("N", "ray"))},
                                     .help = "",
                                     .example = ""}}};
-  const Match plain = parse(command, Line{"a", "b", "c"});
+  const Match plain = parse(command, Words{"a", "b", "c"});
   EXPECT_THAT(plain.files("FILES"), ElementsAre("a", "b"));
   EXPECT_EQ(plain.text("LAST"), "c");
   EXPECT_FALSE(plain.has("N"));
-  const Match counted = parse(command, Line{"a", "b", "10", "rays"});
+  const Match counted = parse(command, Words{"a", "b", "10", "rays"});
   EXPECT_THAT(counted.files("FILES"), ElementsAre("a"));
   EXPECT_EQ(counted.integer("N"), 10);
-  EXPECT_THROW(static_cast<void>(parse(command, Line{"a"})), ray::Error);
+  EXPECT_THROW(static_cast<void>(parse(command, Words{"a"})), ray::Error);
 }
 
 TEST(words, forms_are_those_of_the_manual) {

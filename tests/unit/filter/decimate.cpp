@@ -102,20 +102,6 @@ TEST(DecimateEvery, CountsValidRaysOnly) {
   }
 }
 
-template <class Decimate>
-ErrorCode code_of(const Decimate& decimate) {
-  const RayCloud cloud = random_cloud(3, {.rays = 4});
-  MemorySource source(cloud);
-  MemorySink sink;
-  try {
-    decimate(Context{}, source, sink);
-  } catch (const Error& error) {
-    return error.code();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return ErrorCode::cancelled;
-}
-
 TEST(Decimate, RefusesWidthsAndNumbersThatMakeNoSense) {
   for (const double width : {0.0, -0.1, std::nan(""), HUGE_VAL}) {
     EXPECT_EQ(code_of(by_width(width)), ErrorCode::usage) << width;

@@ -160,20 +160,6 @@ TEST(Decimate, AMillionRaysInLittleMemory) {
                         thinned(cloud, little, 32768, by_range(0.03))));
 }
 
-template <class Decimate>
-ErrorCode code_of(const Decimate& decimate) {
-  const RayCloud cloud = random_cloud(3, {.rays = 4});
-  MemorySource source(cloud);
-  MemorySink sink;
-  try {
-    decimate(Context{}, source, sink);
-  } catch (const Error& error) {
-    return error.code();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return ErrorCode::cancelled;
-}
-
 TEST(Decimate, EveryFormRefusesWhatMakesNoSense) {
   const auto to_count = [](double width, std::uint64_t most) {
     return [=](const Context& context, RaySource& source, RaySink& sink) {

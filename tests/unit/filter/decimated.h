@@ -3,6 +3,7 @@
 
 #include "support/random_cloud.h"
 
+#include <raycloud/core/error.h>
 #include <raycloud/core/memory_stream.h>
 #include <raycloud/exec/stream.h>
 
@@ -36,6 +37,21 @@ void expect_however_it_runs(const RayCloud& cloud, const RayCloud& expected, con
   const auto chunk = *rc::gen::element<std::size_t>(7, 50, 1000);
   const auto memory = *rc::gen::element<std::size_t>(1, 20000, 40000, 80000, 160000);
   RC_ASSERT(same_bits(thinned(cloud, {.threads = threads, .memory = memory}, chunk, decimate), expected));
+}
+
+/// Of the error that `decimate(context, source, sink)` throws.
+template <class Decimate>
+ErrorCode code_of(const Decimate& decimate) {
+  const RayCloud cloud = random_cloud(3, {.rays = 4});
+  MemorySource source(cloud);
+  MemorySink sink;
+  try {
+    decimate(Context{}, source, sink);
+  } catch (const Error& error) {
+    return error.code();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return ErrorCode::cancelled;
 }
 
 }  // namespace ray::test

@@ -24,7 +24,7 @@ RayCloud moved(const RayCloud& cloud, const Pose& pose, Seconds shift = {}, unsi
   return sink.cloud();
 }
 
-RayCloud any_cloud() {
+RayCloud cloud_to_move() {
   return random_cloud(
       *rc::gen::arbitrary<std::uint64_t>(),
       {.rays = *rc::gen::inRange<std::size_t>(0, 300),
@@ -54,7 +54,7 @@ bool same_but_for_place(const RayCloud& a, const RayCloud& b) {
 }
 
 RC_GTEST_PROP(TransformCloud, ThereAndBackIsTheSameToRounding, ()) {
-  const RayCloud cloud = any_cloud();
+  const RayCloud cloud = cloud_to_move();
   const Eigen::Vector3d v = any_vector(6);
   const RayCloud turned = moved(moved(cloud, rotation_pose(v)), rotation_pose(-v));
   RC_ASSERT(largest_difference(turned, cloud) < 2e-8);
@@ -66,7 +66,7 @@ RC_GTEST_PROP(TransformCloud, ThereAndBackIsTheSameToRounding, ()) {
 }
 
 RC_GTEST_PROP(TransformCloud, IsTheProductOfEveryPointInAnyChunks, ()) {
-  const RayCloud cloud = any_cloud();
+  const RayCloud cloud = cloud_to_move();
   Pose pose = rotation_pose(any_vector(3));
   pose.translation = any_vector(100);
   RayCloud expected = cloud;
@@ -83,7 +83,7 @@ RC_GTEST_PROP(TransformCloud, IsTheProductOfEveryPointInAnyChunks, ()) {
 }
 
 RC_GTEST_PROP(TransformCloud, KeepsDistances, ()) {
-  const RayCloud cloud = any_cloud();
+  const RayCloud cloud = cloud_to_move();
   const RayCloud turned = moved(cloud, rotation_pose(any_vector(6)));
   for (std::size_t i = 0; i < cloud.size(); i++) {
     const double before = (cloud.ends[i] - cloud.starts[i]).norm();

@@ -16,7 +16,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-std::string error_of(const std::string& text, const TrajectoryReadOptions& options = {}) {
+std::string trajectory_error(const std::string& text, const TrajectoryReadOptions& options = {}) {
   try {
     static_cast<void>(parse_trajectory(text, "t.txt", options));
   } catch (const Error& error) {
@@ -67,8 +67,8 @@ TEST(trajectory_file, a_given_format_and_clock_are_obeyed) {
                         .trajectory;
   EXPECT_EQ(path.times[0], 2.5);
   EXPECT_EQ(path.positions[0], Eigen::Vector3d(10, 2, 3));
-  EXPECT_THAT(error_of("1 2 3 4\n", {.format = "x,y"}), HasSubstr("is not like t,x,y,z"));
-  EXPECT_THAT(error_of("1 2 3 4\n", {.format = "t,x,y,z,qw,qx,qy,qz"}), HasSubstr("has 4 columns"));
+  EXPECT_THAT(trajectory_error("1 2 3 4\n", {.format = "x,y"}), HasSubstr("is not like t,x,y,z"));
+  EXPECT_THAT(trajectory_error("1 2 3 4\n", {.format = "t,x,y,z,qw,qx,qy,qz"}), HasSubstr("has 4 columns"));
 }
 
 TEST(trajectory_file, what_can_be_put_right_is_put_right_and_told) {
@@ -83,13 +83,13 @@ TEST(trajectory_file, what_can_be_put_right_is_put_right_and_told) {
 }
 
 TEST(trajectory_file, errors_name_the_line) {
-  EXPECT_THAT(error_of(""), HasSubstr("t.txt: has no trajectory nodes"));
-  EXPECT_THAT(error_of("%time x y z\n"), HasSubstr("no trajectory nodes"));
-  EXPECT_THAT(error_of("nan nan nan nan\n"), HasSubstr("no trajectory nodes"));
-  EXPECT_THAT(error_of("1 2 3\n"), HasSubstr("line 1 has 3 numbers"));
-  EXPECT_THAT(error_of("%time x y z\n1 2 3 4\n2 3 4\n"), HasSubstr("line 3 has 3 of 4"));
-  EXPECT_THAT(error_of("1 2 3 4\n2 3 4 x\n"), HasSubstr("line 2 has 'x'"));
-  EXPECT_THAT(error_of("\x89PNG\r\n\x1a\n"), HasSubstr("line 1 has"));
+  EXPECT_THAT(trajectory_error(""), HasSubstr("t.txt: has no trajectory nodes"));
+  EXPECT_THAT(trajectory_error("%time x y z\n"), HasSubstr("no trajectory nodes"));
+  EXPECT_THAT(trajectory_error("nan nan nan nan\n"), HasSubstr("no trajectory nodes"));
+  EXPECT_THAT(trajectory_error("1 2 3\n"), HasSubstr("line 1 has 3 numbers"));
+  EXPECT_THAT(trajectory_error("%time x y z\n1 2 3 4\n2 3 4\n"), HasSubstr("line 3 has 3 of 4"));
+  EXPECT_THAT(trajectory_error("1 2 3 4\n2 3 4 x\n"), HasSubstr("line 2 has 'x'"));
+  EXPECT_THAT(trajectory_error("\x89PNG\r\n\x1a\n"), HasSubstr("line 1 has"));
   const test::Scratch scratch;
   EXPECT_THROW(static_cast<void>(read_trajectory(scratch.path("none.txt"))), Error);
   EXPECT_THROW(static_cast<void>(read_trajectory(scratch.folder())), Error);

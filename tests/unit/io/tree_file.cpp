@@ -15,7 +15,7 @@ using namespace test;
 using ::testing::ElementsAre;
 using ::testing::StartsWith;
 
-Forest read_text(const std::string& text) {
+Forest trees_of(const std::string& text) {
   Scratch scratch;
   write_file(scratch.path("trees.txt"), text);
   return read_trees(scratch.path("trees.txt"));
@@ -35,7 +35,7 @@ std::string message(const std::string& text) {
 }
 
 TEST(TreeFile, AsOtherProgramsWriteIt) {
-  const Forest forest = read_text(
+  const Forest forest = trees_of(
       "# tree structure file:\r\n"
       "height,crown_radius, x,y,z,radius,parent_id,section_id\r\n"
       "12.5,3, 1,2,0,0.2,-1,0, 1,2,3,0.15,0,1, 1.5,2,5,1e-1,1,2, \r\n"
@@ -57,11 +57,11 @@ TEST(TreeFile, AsOtherProgramsWriteIt) {
 }
 
 TEST(TreeFile, TrunksHaveNoParents) {
-  const Forest forest = read_text("x,y,z,radius\n1,2,3,0.5\n4,5,6,0.25\n");
+  const Forest forest = trees_of("x,y,z,radius\n1,2,3,0.5\n4,5,6,0.25\n");
   ASSERT_EQ(forest.trees.size(), 2u);
   EXPECT_EQ(forest.trees[1].segments.at(0).radius, 0.25);
   EXPECT_TRUE(forest.tree_attributes.empty());
-  EXPECT_TRUE(read_text("x,y,z,radius\n").trees.empty());
+  EXPECT_TRUE(trees_of("x,y,z,radius\n").trees.empty());
 }
 
 bool same(const Forest& a, const Forest& b) {
