@@ -16,13 +16,15 @@ cases() {
   done
 }
 
-# run_case BIN CASE: runs it in a scratch folder; its exit status is ours, its output in $result.
+# run_case BIN CASE: runs it in a scratch folder; its exit status is ours, its output in $result. The folder above is
+# the case's own too: what must not lie among the files it watches goes to ../out and ../err.
 run_case() {
   local scratch status=0
   scratch=$(mktemp -d)
+  mkdir "$scratch/here"
   (
-    cd "$scratch"
-    export PATH="$1:$PATH" BIN="$1" HOME="$scratch" LC_ALL=C TERM=dumb COLUMNS=80
+    cd "$scratch/here"
+    export PATH="$1:$PATH" BIN="$1" HOME="$scratch/here" LC_ALL=C TERM=dumb COLUMNS=80
     export CLI="$here" DATA="$here/../data" BASH_ENV="$here/support.sh"
     unset RAYCLOUD_VIEWER
     exec bash -eu -o pipefail "$here/$2.sh"
