@@ -200,9 +200,10 @@ class Section {
       if (ending == Ending::given_up && !cancelled) cancelled = stage.error;
     }
     if (fatal) std::rethrow_exception(fatal);
+    if (!again && !cancelled) return true;  // also when Ctrl-C comes after the file was complete
     check_cancelled(context_);
-    if (!again && cancelled) std::rethrow_exception(cancelled);
-    return !again;
+    if (!again) std::rethrow_exception(cancelled);
+    return false;
   }
 
   const Context& context_;

@@ -1,4 +1,5 @@
 // Movers do what their names say, on the ground, and out of the way.
+#include "scene_words.h"
 #include "small_scene.h"
 
 #include <raycloud/synth/movers.h>
@@ -45,7 +46,8 @@ void check_mover(const Scene& scene, const SceneObject& mover, const SceneCaster
 
 class WithMovers : public ::testing::TestWithParam<SceneKind> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, WithMovers,
-                         ::testing::Values(SceneKind::room, SceneKind::building, SceneKind::tree));
+                         ::testing::Values(SceneKind::room, SceneKind::building, SceneKind::tree),
+                         test::name_by_scene);
 
 TEST_P(WithMovers, DoWhatTheirNamesSay) {
   const Scene scene = make_scene(GetParam(), 3);

@@ -1,5 +1,7 @@
 // Every world, scanned without noise: nothing stands between the sensor and what it saw, and the sky is
 // empty. The rays are followed backwards, from their ends, so that the arithmetic is another one.
+#include "scene_words.h"
+
 #include <raycloud/exec/stream.h>
 #include <raycloud/synth/movers.h>
 #include <raycloud/synth/scene_caster.h>
@@ -39,9 +41,7 @@ void check_scan(const Scene& scene, const SceneCaster& caster, const SimulationO
 }
 
 class ScansOfScenes : public ::testing::TestWithParam<SceneKind> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, ScansOfScenes,
-                         ::testing::Values(SceneKind::room, SceneKind::building, SceneKind::tree,
-                                           SceneKind::forest, SceneKind::terrain, SceneKind::field));
+INSTANTIATE_TEST_SUITE_P(Scenes, ScansOfScenes, testing::ValuesIn(test::kSceneKinds), test::name_by_scene);
 
 TEST_P(ScansOfScenes, AgreeWithTheirSurfaces) {
   Scene scene = make_scene(GetParam(), 2);

@@ -1,4 +1,5 @@
 #include "scene_geometry.h"
+#include "scene_words.h"
 
 #include <raycloud/synth/scenes.h>
 
@@ -12,10 +13,6 @@ namespace ray {
 namespace {
 
 using test::triangle;
-
-constexpr std::array kKinds{SceneKind::room,   SceneKind::building, SceneKind::tree,
-                            SceneKind::forest, SceneKind::terrain,  SceneKind::field};
-constexpr std::array kWords{"room", "building", "tree", "forest", "terrain", "field"};
 
 const Scene& scene_of(SceneKind kind) {
   static std::map<SceneKind, Scene> scenes;
@@ -92,8 +89,8 @@ class EveryScene : public testing::TestWithParam<SceneKind> {
 };
 
 TEST_P(EveryScene, is_called_by_its_word) {
-  EXPECT_EQ(scene_kind(kWords[static_cast<std::size_t>(GetParam())]), GetParam());
-  EXPECT_EQ(scene().kind, kWords[static_cast<std::size_t>(GetParam())]);
+  EXPECT_EQ(scene_kind(test::word_of(GetParam())), GetParam());
+  EXPECT_EQ(scene().kind, test::word_of(GetParam()));
   EXPECT_EQ(scene().seed, 1u);
 }
 
@@ -173,9 +170,7 @@ TEST_P(EveryScene, has_the_same_bits_on_every_machine) {
       << "0x" << std::hex << fingerprint(scene());
 }
 
-INSTANTIATE_TEST_SUITE_P(scenes, EveryScene, testing::ValuesIn(kKinds), [](const auto& kind) {
-  return std::string(kWords[static_cast<std::size_t>(kind.param)]);
-});
+INSTANTIATE_TEST_SUITE_P(scenes, EveryScene, testing::ValuesIn(test::kSceneKinds), test::name_by_scene);
 
 TEST(scenes, other_words_name_no_scene) {
   for (const char* word : {"", "Room", "rooms", "roo", "street"})
