@@ -24,17 +24,25 @@ class WatchedSink final : public RaySink {
  public:
   WatchedSink(std::unique_ptr<RaySink> sink, std::atomic<bool>& lost) : sink_(std::move(sink)), lost_(lost) {}
   void encode(const RayCloud& rays, RawChunk& raw) const override {
-    try {
-      sink_->encode(rays, raw);
-    } catch (const PrecisionLoss&) {
-      lost_ = true;
-      throw;
-    }
+    watched([&] { sink_->encode(rays, raw); });
+  }
+  void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    watched([&] { sink_->encode_rows(rays, rows, raw); });
   }
   void write(const RawChunk& raw) override { sink_->write(raw); }
   void finish() override { sink_->finish(); }
 
  private:
+  template <class Call>
+  void watched(const Call& call) const {
+    try {
+      call();
+    } catch (const PrecisionLoss&) {
+      lost_ = true;
+      throw;
+    }
+  }
+
   std::unique_ptr<RaySink> sink_;
   std::atomic<bool>& lost_;
 };

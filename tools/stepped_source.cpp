@@ -34,6 +34,10 @@ class ChunkSink final : public RaySink {
     chunk_ = rays;
     raw.rows = rays.size();
   }
+  void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    chunk_.assign_rows(rays, rows);
+    raw.rows = rows.size();
+  }
   void consume(RayCloud& rays, RawChunk& raw) const override {
     raw.rows = rays.size();
     std::swap(chunk_, rays);

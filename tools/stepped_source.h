@@ -15,6 +15,9 @@ namespace ray::tools {
 class NoSink final : public RaySink {
  public:
   void encode(const RayCloud& rays, RawChunk& raw) const override { raw.rows = rays.size(); }
+  void encode_rows(const RayCloud&, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    raw.rows = rows.size();
+  }
   void write(const RawChunk&) override {}
   void finish() override {}
 };

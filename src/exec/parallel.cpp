@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <cassert>
+#include <mutex>
 
 namespace ray {
 
@@ -21,6 +22,31 @@ void run_in_arena(const Context& context, const Work& work) {
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute(work);
 }
+
+/// The slots that no item has. The one freed last comes first: its memory is still near a core.
+class FreeSlots {
+ public:
+  explicit FreeSlots(std::size_t count) {
+    for (std::size_t slot = count; slot-- > 0;)
+      slots_.push_back(slot);
+  }
+  /// Precondition: fewer items than slots are under way.
+  std::size_t take() {
+    const std::lock_guard lock(mutex_);
+    assert(!slots_.empty());
+    const std::size_t slot = slots_.back();
+    slots_.pop_back();
+    return slot;
+  }
+  void put(std::size_t slot) {
+    const std::lock_guard lock(mutex_);
+    slots_.push_back(slot);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::size_t> slots_;
+};
 
 }  // namespace
 
@@ -50,13 +76,11 @@ void pipeline(const Context& context, std::size_t slot_count, const std::functio
     }
     return;
   }
-  // The first and the last stage are in order, so the items under way are always consecutive and item k can
-  // use slot k modulo the slot count.
-  std::size_t next = 0;
+  FreeSlots free(slot_count);
   auto chain = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
                                                    [&](tbb::flow_control& control) -> std::size_t {
                                                      check_cancelled(context);
-                                                     const std::size_t slot = next++ % slot_count;
+                                                     const std::size_t slot = free.take();
                                                      if (!read(slot)) control.stop();
                                                      return slot;
                                                    });
@@ -68,8 +92,8 @@ void pipeline(const Context& context, std::size_t slot_count, const std::functio
               return slot;
             });
   }
-  const auto last =
-      chain & tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [](std::size_t) {});
+  const auto last = chain & tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel,
+                                                                [&](std::size_t slot) { free.put(slot); });
   run_in_arena(context, [&] { tbb::parallel_pipeline(slot_count, last); });
 }
 

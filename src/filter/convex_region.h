@@ -1,5 +1,6 @@
 #pragma once
-/// Convex regions of space and where a ray enters and leaves them.
+/// Convex regions of space and where a ray enters and leaves them. kConvexOutside: what is outside is convex
+/// too.
 
 #include <raycloud/core/cloud_info.h>
 
@@ -23,6 +24,7 @@ struct Crossing {
 
 /// {x : x . p <= p . p}.
 struct HalfSpace {
+  static constexpr bool kConvexOutside = true;
   Eigen::Vector3d p;
   [[nodiscard]] bool contains(const Eigen::Vector3d& x) const { return x.dot(p) <= p.squaredNorm(); }
   [[nodiscard]] Crossing cross(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const;
@@ -30,6 +32,7 @@ struct HalfSpace {
 
 /// Closed.
 struct Box {
+  static constexpr bool kConvexOutside = false;
   Eigen::Vector3d low;
   Eigen::Vector3d high;
   [[nodiscard]] bool contains(const Eigen::Vector3d& x) const {
@@ -40,6 +43,7 @@ struct Box {
 
 /// All that is at most `radius` from the line between `a` and `b`.
 struct Capsule {
+  static constexpr bool kConvexOutside = false;
   Eigen::Vector3d a;
   Eigen::Vector3d b;
   double radius = 0.0;

@@ -10,29 +10,20 @@ namespace {
 
 constexpr const char* kClipped = "clipped";
 
-/// One loop for all columns: the rows stay in the nearest cache.
-void gather_rows(const RayCloud& from, const std::vector<std::uint32_t>& rows, RayCloud& to) {
-  to.resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::uint32_t row = rows[i];
-    to.starts[i] = from.starts[row];
-    to.ends[i] = from.ends[row];
-    to.times[i] = from.times[row];
-    to.colours[i] = from.colours[row];
-    to.bounded[i] = from.bounded[row];
-  }
+/// The column, added with zeros where there is none.
+std::span<std::uint8_t> clipped_column(RayCloud& rays) {
+  const std::vector<ColumnInfo> columns = with_clipped(schema_of(rays));
+  if (columns.size() > rays.extras.size()) rays.extras.emplace_back(columns.back(), rays.size());
+  return rays.extra(kClipped)->values<std::uint8_t>();
 }
 
-/// Every value is written to both sides and stays in one: a branch would be mispredicted as often as not.
-/// Both have room for one value more than they get.
-template <class T>
-void sort_values(const T* from, std::span<const std::uint8_t> mask, T* kept, T* others) {
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    const std::ptrdiff_t keep = mask[i] != 0 ? 1 : 0;
-    *kept = *others = from[i];
-    kept += keep;
-    others += 1 - keep;
-  }
+/// Makes a row, which is the whole ray, a piece of it.
+void cut_row(RayCloud& rays, std::span<std::uint8_t> clipped, std::size_t row, const Eigen::Vector3d& start,
+             const Eigen::Vector3d& end, std::uint8_t flags) {
+  rays.starts[row] = start;
+  rays.ends[row] = end;
+  clipped[row] |= flags;
+  if ((flags & kEndCut) != 0) rays.bounded[row] = 0;
 }
 
 template <class T>
@@ -55,51 +46,27 @@ void RayPieces::add(std::size_t row, const Eigen::Vector3d& start, const Eigen::
 }
 
 void RayPieces::gather(const RayCloud& rays, bool marked, RayCloud& out) const {
-  gather_rows(rays, rows_, out);
-  const std::vector<ColumnInfo> columns = schema_of(rays);
-  out.set_schema(marked ? with_clipped(columns) : columns);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    visit_scalar(columns[c].type, [&]<class T>() {
-      const std::span<const T> from = rays.extras[c].values<T>();
-      const std::span<T> to = out.extras[c].values<T>();
-      for (std::size_t i = 0; i < rows_.size(); ++i)
-        to[i] = from[rows_[i]];
-    });
-  }
+  out.assign_rows(rays, rows_);
   if (!marked) return;
-  const std::span<std::uint8_t> clipped = out.extra(kClipped)->values<std::uint8_t>();
-  // A column that was just added may hold what an earlier chunk left in it.
-  if (out.extras.size() > columns.size()) std::fill(clipped.begin(), clipped.end(), std::uint8_t{0});
-  for (const Cut& cut : cuts_) {
-    out.starts[cut.piece] = cut.start;
-    out.ends[cut.piece] = cut.end;
-    clipped[cut.piece] |= cut.flags;
-    if ((cut.flags & kEndCut) != 0) out.bounded[cut.piece] = 0;
-  }
+  const std::span<std::uint8_t> clipped = clipped_column(out);
+  for (const Cut& cut : cuts_)
+    cut_row(out, clipped, cut.piece, cut.start, cut.end, cut.flags);
 }
 
-void sort_rows(const RayCloud& rays, std::span<const std::uint8_t> mask, RayCloud& kept, RayCloud& others) {
-  std::size_t count = 0;
-  for (const std::uint8_t keep : mask)
-    count += keep != 0 ? 1 : 0;
-  const std::vector<ColumnInfo> columns = schema_of(rays);
-  for (RayCloud* side : {&kept, &others}) {
-    side->set_schema(columns);
-    side->resize((side == &kept ? count : rays.size() - count) + 1);
+void append_pieces(RayCloud& rays, std::span<const CutPiece> pieces) {
+  const std::size_t first = rays.size();
+  rays.resize(first + pieces.size());
+  const std::span<std::uint8_t> clipped = clipped_column(rays);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const std::size_t row = pieces[i].row, piece = first + i;
+    rays.times[piece] = rays.times[row];
+    rays.colours[piece] = rays.colours[row];
+    rays.bounded[piece] = rays.bounded[row];
+    for (Column& column : rays.extras)
+      std::copy_n(column.data() + row * column.stride(), column.stride(),
+                  column.data() + piece * column.stride());
+    cut_row(rays, clipped, piece, pieces[i].start, pieces[i].end, pieces[i].flags);
   }
-  sort_values(rays.starts.data(), mask, kept.starts.data(), others.starts.data());
-  sort_values(rays.ends.data(), mask, kept.ends.data(), others.ends.data());
-  sort_values(rays.times.data(), mask, kept.times.data(), others.times.data());
-  sort_values(rays.colours.data(), mask, kept.colours.data(), others.colours.data());
-  sort_values(rays.bounded.data(), mask, kept.bounded.data(), others.bounded.data());
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    visit_scalar(columns[c].type, [&]<class T>() {
-      sort_values(rays.extras[c].values<T>().data(), mask, kept.extras[c].values<T>().data(),
-                  others.extras[c].values<T>().data());
-    });
-  }
-  kept.resize(count);
-  others.resize(rays.size() - count);
 }
 
 void append_rows(RayCloud& to, const RayCloud& from, std::size_t begin, std::size_t end) {

@@ -61,9 +61,17 @@ void each_piece(const Eigen::Vector3d& start, bool bounded, std::vector<Stretch>
   }
 }
 
-/// Replaces `kept` by the rows where `mask` is not 0, and `others` by the rest, in order. Precondition: a
-/// byte for each ray.
-void sort_rows(const RayCloud& rays, std::span<const std::uint8_t> mask, RayCloud& kept, RayCloud& others);
+/// A piece of the ray in a row.
+struct CutPiece {
+  std::size_t row = 0;
+  Eigen::Vector3d start;
+  Eigen::Vector3d end;
+  std::uint8_t flags = 0;
+};
+
+/// Adds the pieces as rows behind the others, each with all columns of its ray, as RayPieces::gather marks
+/// them.
+void append_pieces(RayCloud& rays, std::span<const CutPiece> pieces);
 
 /// Adds the rows [begin, end) of `from`, which has the same columns. An empty `to` takes its columns.
 void append_rows(RayCloud& to, const RayCloud& from, std::size_t begin, std::size_t end);

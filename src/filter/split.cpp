@@ -4,16 +4,46 @@
 #include <raycloud/core/error.h>
 #include <raycloud/exec/stream_parts.h>
 #include <raycloud/filter/split.h>
+#include <raycloud/filter/time_base.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace ray {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Of all rays, looking at nothing but their times.
+TimeSpan time_span(const Context& context, RaySource& source) {
+  struct Item {
+    RawChunk raw;
+    std::vector<double> times;
+    TimeSpan span;
+  };
+  std::vector<Item> items(pipeline_slots(context));
+  TimeSpan all;
+  const auto look = [&](std::size_t slot) {
+    Item& item = items[slot];
+    source.decode_times(item.raw, item.times);
+    item.span = {};
+    for (const double time : item.times)
+      item.span.add(time);
+  };
+  const auto join = [&](std::size_t slot) {
+    const Item& item = items[slot];
+    if (!item.span.empty()) {
+      all.add(item.span.first);
+      all.add(item.span.last);
+    }
+    if (context.progress != nullptr) context.progress->advance(item.raw.rows);
+  };
+  using Mode = PipelineStage::Mode;
+  if (context.progress != nullptr) context.progress->begin("times", source.info().ray_count.value_or(0));
+  pipeline(context, items.size(), [&](std::size_t slot) { return source.fetch(items[slot].raw); },
+           {{Mode::parallel, look}, {Mode::ordered, join}});
+  if (context.progress != nullptr) context.progress->end();
+  return all;
+}
 
 double squared_length(const Eigen::Vector3d& v, const char* message) {
   const double squared = v.squaredNorm();
@@ -69,20 +99,10 @@ SplitRulePtr split_by_single_colour(const Colour& colour) {
 
 Seconds time_at(const Context& context, RaySource& source, double fraction) {
   require(fraction >= 0.0 && fraction <= 1.0, "the share of the time must be from 0 to 100 %");
-  using Span = std::pair<double, double>;
-  Span all{kInfinity, -kInfinity};
-  stream(
-      context, source, nullptr,
-      [](const RayCloud& rays) {
-        const auto [first, last] = std::minmax_element(rays.times.begin(), rays.times.end());
-        return rays.empty() ? Span{kInfinity, -kInfinity} : Span{*first, *last};
-      },
-      [&](const RayCloud&, const Span& span) {
-        all = {std::min(all.first, span.first), std::max(all.second, span.second)};
-      });
-  if (all.first > all.second) return {};
+  const TimeSpan all = time_span(context, source);
+  if (all.empty()) return {};
   // At 100 % the last ray is inside, whatever the rounding.
-  return {fraction == 1.0 ? all.second : all.first + fraction * (all.second - all.first)};
+  return {fraction == 1.0 ? all.last : all.first + fraction * (all.last - all.first)};
 }
 
 SplitCounts split_cloud(const Context& context, RaySource& source, const SplitRule& rule, RaySink& inside,
@@ -90,16 +110,17 @@ SplitCounts split_cloud(const Context& context, RaySource& source, const SplitRu
   SplitCounts counts;
   counts.stream = stream_parts(
       context, source,
-      [&](const RayCloud& rays, std::vector<StreamPart>& parts) {
+      [&](RayCloud& rays, std::vector<StreamPart>& parts) {
         parts.resize(2);
         parts[0].sink = &inside;
         parts[1].sink = &outside;
-        rule.apply(rays, parts[0].rays, parts[1].rays);
+        parts[0].of_chunk = parts[1].of_chunk = true;
+        rule.apply(rays, parts[0].rows, parts[1].rows);
         return Nothing{};
       },
       [&](Nothing, const std::vector<StreamPart>& parts) {
-        counts.inside += parts[0].rays.size();
-        counts.outside += parts[1].rays.size();
+        counts.inside += parts[0].size();
+        counts.outside += parts[1].size();
       });
   return counts;
 }

@@ -20,24 +20,40 @@ class RegionRule final : public SplitRule {
     return with_clipped(std::move(source));
   }
 
-  void apply(const RayCloud& rays, RayCloud& inside, RayCloud& outside) const override {
-    std::array<RayPieces, 2> parts;
+  void apply(RayCloud& rays, std::vector<std::uint32_t>& inside,
+             std::vector<std::uint32_t>& outside) const override {
+    const std::array<std::vector<std::uint32_t>*, 2> parts{&inside, &outside};
+    for (std::vector<std::uint32_t>* part : parts)
+      part->clear();
+    std::vector<CutPiece> pieces;
     std::vector<Stretch> way;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const std::uint32_t part = way_through(region_, rays.starts[i], rays.ends[i], stored_, way);
+      const std::uint32_t part = part_of(rays.starts[i], rays.ends[i], way);
       if (way.empty()) {
-        parts[part].add(i);
+        parts[part]->push_back(static_cast<std::uint32_t>(i));
         continue;
       }
       each_piece(rays.starts[i], rays.bounded[i] != 0, way,
                  [&](std::uint32_t piece_part, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
-                     std::uint8_t flags) { parts[piece_part].add(i, start, end, flags); });
+                     std::uint8_t flags) {
+                   parts[piece_part]->push_back(static_cast<std::uint32_t>(rays.size() + pieces.size()));
+                   pieces.push_back({i, start, end, flags});
+                 });
     }
-    parts[0].gather(rays, true, inside);
-    parts[1].gather(rays, true, outside);
+    append_pieces(rays, pieces);
   }
 
  private:
+  /// As way_through; most rays are seen at once to stay on one side.
+  [[nodiscard]] std::uint32_t part_of(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                      std::vector<Stretch>& way) const {
+    way.clear();
+    const bool starts_inside = region_.contains(start), ends_inside = region_.contains(end);
+    if (starts_inside && ends_inside) return 0;
+    if (Region::kConvexOutside && !starts_inside && !ends_inside) return 1;
+    return way_through(region_, start, end, stored_, way);
+  }
+
   Region region_;
   Precision stored_;
 };

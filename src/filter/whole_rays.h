@@ -1,8 +1,6 @@
 #pragma once
 /// Rules that sort rays whole.
 
-#include "ray_pieces.h"
-
 #include <raycloud/filter/split.h>
 
 #include <utility>
@@ -17,11 +15,18 @@ class WholeRays final : public SplitRule {
 
   std::vector<ColumnInfo> columns(std::vector<ColumnInfo> source) const override { return source; }
 
-  void apply(const RayCloud& rays, RayCloud& inside, RayCloud& outside) const override {
-    std::vector<std::uint8_t> mask(rays.size());
-    for (std::size_t i = 0; i < mask.size(); ++i)
-      mask[i] = inside_(rays, i) ? 1 : 0;
-    sort_rows(rays, mask, inside, outside);
+  /// Every row is written to both sides and stays in one: a branch would be mispredicted as often as not.
+  void apply(RayCloud& rays, std::vector<std::uint32_t>& inside,
+             std::vector<std::uint32_t>& outside) const override {
+    inside.resize(rays.size());
+    outside.resize(rays.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      inside[kept] = outside[i - kept] = static_cast<std::uint32_t>(i);
+      kept += inside_(rays, i) ? 1 : 0;
+    }
+    inside.resize(kept);
+    outside.resize(rays.size() - kept);
   }
 
  private:

@@ -84,6 +84,9 @@ class ChannelSink final : public RaySink {
   ~ChannelSink() override { queue_->leave_as_writer(); }
 
   void encode(const RayCloud& rays, RawChunk& raw) const override { encoder_->encode(rays, raw); }
+  void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    encoder_->encode_rows(rays, rows, raw);
+  }
 
   void write(const RawChunk& raw) override {
     RawChunk copy = queue_->spare();

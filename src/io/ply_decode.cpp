@@ -82,33 +82,73 @@ bool is_standard(const PlySchema& schema, const PlyLayout& layout, ScalarType re
          schema.alpha->type == ScalarType::uint8 && schema.alpha->offset == 6 * size + 11;
 }
 
+/// What a row of that layout says of place and time.
 template <class Real>
-void decode_standard(const std::byte* rows, std::size_t stride, std::size_t count, RayCloud& rays) {
+struct StandardRow {
+  Real end[3];
+  Real ray[3];
+  double time;
+
+  explicit StandardRow(const std::byte* row) {
+    std::memcpy(end, row, sizeof end);
+    std::memcpy(&time, row + sizeof end, 8);
+    std::memcpy(ray, row + sizeof end + 8, sizeof ray);
+  }
+  [[nodiscard]] double start(std::size_t axis) const {
+    return static_cast<double>(end[axis]) + static_cast<double>(ray[axis]);
+  }
+};
+
+/// 0 if the ray is finite, else NaN: 0 · x is NaN for NaN and for infinity, and a start is not finite where
+/// its end is not.
+double zero_if_finite(double x, double y, double z, double time) {
+  return 0.0 * (x + y + z + time);
+}
+
+/// Whether all rays are finite.
+template <class Real>
+bool decode_standard(const std::byte* rows, std::size_t stride, std::size_t count, RayCloud& rays) {
   double* ends = rays.ends.data()->data();
   double* starts = rays.starts.data()->data();
+  double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i, rows += stride) {
-    Real end[3], ray[3];
-    std::memcpy(end, rows, sizeof end);
-    std::memcpy(&rays.times[i], rows + sizeof end, 8);
-    std::memcpy(ray, rows + sizeof end + 8, sizeof ray);
-    std::memcpy(&rays.colours[i], rows + 2 * sizeof end + 8, 4);
-    rays.bounded[i] = std::to_integer<std::uint8_t>(rows[2 * sizeof end + 11]) != 0;
+    const StandardRow<Real> row(rows);
+    rays.times[i] = row.time;
+    std::memcpy(&rays.colours[i], rows + 2 * sizeof row.end + 8, 4);
+    rays.bounded[i] = std::to_integer<std::uint8_t>(rows[2 * sizeof row.end + 11]) != 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ends[3 * i + axis] = end[axis];
-      starts[3 * i + axis] = static_cast<double>(end[axis]) + static_cast<double>(ray[axis]);
+      ends[3 * i + axis] = static_cast<double>(row.end[axis]);
+      starts[3 * i + axis] = row.start(axis);
     }
+    sum += zero_if_finite(row.start(0), row.start(1), row.start(2), row.time);
   }
+  return sum == 0.0;
+}
+
+/// Whether all rays are finite; only then are these their times.
+template <class Real>
+bool decode_standard_times(const std::byte* rows, std::size_t stride, std::vector<double>& times) {
+  double sum = 0.0;
+  for (double& time : times) {
+    const StandardRow<Real> row(rows);
+    time = row.time;
+    sum += zero_if_finite(row.start(0), row.start(1), row.start(2), row.time);
+    rows += stride;
+  }
+  return sum == 0.0;
+}
+
+bool all_finite(const RayCloud& rays) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Eigen::Vector3d& start = rays.starts[i];
+    sum += zero_if_finite(start[0], start[1], start[2], rays.times[i]);
+  }
+  return sum == 0.0;
 }
 
 /// Leaves out rays that are not finite; returns how many.
 std::size_t drop_invalid(RayCloud& rays) {
-  // 0 · x is NaN for NaN and for infinity, and a start is not finite where its end is not.
-  double sum = 0.0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Eigen::Vector3d& start = rays.starts[i];
-    sum += 0.0 * (start[0] + start[1] + start[2] + rays.times[i]);
-  }
-  if (sum == 0.0) return 0;
   std::vector<std::uint8_t> valid(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i)
     valid[i] = is_finite_ray(rays, i) ? 1 : 0;
@@ -133,10 +173,11 @@ std::size_t PlyDecoder::decode(std::span<const std::byte> rows, RayCloud& rays) 
   rays.resize(count);
   rays.set_schema(extras_);
   if (count == 0) return 0;
+  bool finite = true;
   if (standard_single_)
-    decode_standard<float>(rows.data(), layout_.row_bytes, count, rays);
+    finite = decode_standard<float>(rows.data(), layout_.row_bytes, count, rays);
   else if (standard_double_)
-    decode_standard<double>(rows.data(), layout_.row_bytes, count, rays);
+    finite = decode_standard<double>(rows.data(), layout_.row_bytes, count, rays);
   // Column after column, but within few enough rows to stay in the nearest cache.
   const std::size_t block = std::clamp<std::size_t>(16384 / layout_.row_bytes, 1, count);
   const bool standard = standard_single_ || standard_double_;
@@ -145,7 +186,18 @@ std::size_t PlyDecoder::decode(std::span<const std::byte> rows, RayCloud& rays) 
     if (!standard) decode_columns(rows.data(), begin, end, rays);
     decode_extras(rows.data(), begin, end, rays);
   }
-  return drop_invalid(rays);
+  if (!standard) finite = all_finite(rays);
+  return finite ? 0 : drop_invalid(rays);
+}
+
+std::size_t PlyDecoder::decode_times(std::span<const std::byte> rows, std::vector<double>& times) const {
+  times.resize(rows.size() / layout_.row_bytes);
+  if (standard_single_ && decode_standard_times<float>(rows.data(), layout_.row_bytes, times)) return 0;
+  if (standard_double_ && decode_standard_times<double>(rows.data(), layout_.row_bytes, times)) return 0;
+  RayCloud rays;
+  const std::size_t dropped = decode(rows, rays);
+  times = std::move(rays.times);
+  return dropped;
 }
 
 void PlyDecoder::decode_columns(const std::byte* rows, std::size_t begin, std::size_t end,

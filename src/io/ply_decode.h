@@ -27,6 +27,8 @@ class PlyDecoder {
 
   /// As RaySource::decode. Precondition: `rows.size()` is a multiple of the layout's row_bytes.
   std::size_t decode(std::span<const std::byte> rows, RayCloud& rays) const;
+  /// As RaySource::decode_times.
+  std::size_t decode_times(std::span<const std::byte> rows, std::vector<double>& times) const;
 
  private:
   void decode_columns(const std::byte* rows, std::size_t begin, std::size_t end, RayCloud& rays) const;

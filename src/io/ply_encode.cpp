@@ -47,46 +47,79 @@ std::uint8_t alpha_of(const RayCloud& rays, std::size_t i) {
   return rays.bounded[i] != 0 ? std::max<std::uint8_t>(rays.colours[i].intensity, 1) : std::uint8_t{0};
 }
 
-/// The standard columns of a ray in one go: this is what nearly all the time goes to.
-template <class Real>
-void encode_rays(const RayCloud& rays, std::size_t begin, std::size_t end, std::size_t stride,
-                 std::byte* row) {
-  for (std::size_t i = begin; i < end; ++i, row += stride) {
-    const double* to = rays.ends[i].data();
-    const double* from = rays.starts[i].data();
-    const Real point[3] = {static_cast<Real>(to[0]), static_cast<Real>(to[1]), static_cast<Real>(to[2])};
-    const Real ray[3] = {static_cast<Real>(from[0] - to[0]), static_cast<Real>(from[1] - to[1]),
-                         static_cast<Real>(from[2] - to[2])};
-    Colour colour = rays.colours[i];
-    colour.intensity = alpha_of(rays, i);
-    std::memcpy(row, point, sizeof point);
-    std::memcpy(row + sizeof point, &rays.times[i], 8);
-    std::memcpy(row + sizeof point + 8, ray, sizeof ray);
-    std::memcpy(row + 2 * sizeof point + 8, &colour, 4);
+/// Counts values that are certainly stored well enough. The comparisons have no branches.
+class SafeCount {
+ public:
+  explicit SafeCount(double limit) : limit_(limit) {}
+  void add(double value) { safe_ += std::abs(value) < limit_ ? 1 : 0; }
+  void add_time(double time) { safe_ += std::abs(time) <= std::numeric_limits<double>::max() ? 1 : 0; }
+  [[nodiscard]] std::size_t count() const { return safe_; }
+
+ private:
+  double limit_;
+  std::size_t safe_ = 0;
+};
+
+/// The standard columns of rays in one go: this is what nearly all the time goes to. `row_at(i)` is the row
+/// of the i-th. Returns whether all values are safe.
+template <class Real, class RowAt>
+bool encode_rays(const RayCloud& rays, const RowAt& row_at, std::size_t begin, std::size_t end, double limit,
+                 std::size_t stride, std::byte* out) {
+  SafeCount safe(limit);
+  for (std::size_t i = begin; i < end; ++i, out += stride) {
+    const std::size_t row = row_at(i);
+    const double* to = rays.ends[row].data();
+    const double* from = rays.starts[row].data();
+    Real point[3], ray[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double way = from[axis] - to[axis];
+      safe.add(to[axis]);
+      safe.add(way);
+      point[axis] = static_cast<Real>(to[axis]);
+      ray[axis] = static_cast<Real>(way);
+    }
+    const double time = rays.times[row];
+    safe.add_time(time);
+    Colour colour = rays.colours[row];
+    colour.intensity = alpha_of(rays, row);
+    std::memcpy(out, point, sizeof point);
+    std::memcpy(out + sizeof point, &time, 8);
+    std::memcpy(out + sizeof point + 8, ray, sizeof ray);
+    std::memcpy(out + 2 * sizeof point + 8, &colour, 4);
   }
+  return safe.count() == 7 * (end - begin);
 }
 
-void encode_extra(const Column& column, std::size_t begin, std::size_t end, std::size_t stride,
-                  std::byte* row) {
+template <class RowAt>
+void encode_extra(const Column& column, const RowAt& row_at, std::size_t begin, std::size_t end,
+                  std::size_t stride, std::byte* out) {
   // A 64-bit integer is its low half followed by its high one, as the two properties are.
   visit_scalar(column.type(), [&]<class T>() {
-    const std::byte* from = column.data() + begin * sizeof(T);
-    for (std::size_t i = begin; i < end; ++i, row += stride, from += sizeof(T))
-      std::memcpy(row, from, sizeof(T));
+    for (std::size_t i = begin; i < end; ++i, out += stride)
+      std::memcpy(out, column.data() + row_at(i) * sizeof(T), sizeof(T));
   });
 }
 
-template <class Real>
-void encode_points(const RayCloud& rays, std::size_t begin, std::size_t end, const RowColumns& columns,
-                   std::byte* row) {
-  for (std::size_t i = begin; i < end; ++i, row += columns.row_bytes) {
-    const double* to = rays.ends[i].data();
-    const Real point[3] = {static_cast<Real>(to[0]), static_cast<Real>(to[1]), static_cast<Real>(to[2])};
-    std::memcpy(row, point, sizeof point);
-    if (columns.time != RowColumns::kNone) std::memcpy(row + columns.time, &rays.times[i], 8);
-    if (columns.colour != RowColumns::kNone) std::memcpy(row + columns.colour, &rays.colours[i], 3);
-    if (columns.alpha != RowColumns::kNone) row[columns.alpha] = std::byte{alpha_of(rays, i)};
+/// As encode_rays.
+template <class Real, class RowAt>
+bool encode_points(const RayCloud& rays, const RowAt& row_at, std::size_t begin, std::size_t end,
+                   double limit, const RowColumns& columns, std::byte* out) {
+  SafeCount safe(limit);
+  for (std::size_t i = begin; i < end; ++i, out += columns.row_bytes) {
+    const std::size_t row = row_at(i);
+    Real point[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = rays.ends[row].data()[axis];
+      safe.add(value);
+      point[axis] = static_cast<Real>(value);
+    }
+    safe.add_time(rays.times[row]);
+    std::memcpy(out, point, sizeof point);
+    if (columns.time != RowColumns::kNone) std::memcpy(out + columns.time, &rays.times[row], 8);
+    if (columns.colour != RowColumns::kNone) std::memcpy(out + columns.colour, &rays.colours[row], 3);
+    if (columns.alpha != RowColumns::kNone) out[columns.alpha] = std::byte{alpha_of(rays, row)};
   }
+  return safe.count() == 4 * (end - begin);
 }
 
 }  // namespace
@@ -197,45 +230,43 @@ std::size_t PlyEncoder::count_offset() const {
 }
 
 void PlyEncoder::encode(const RayCloud& rays, RawChunk& raw) const {
-  const std::size_t stride = layout_->columns().row_bytes;
-  raw.rows = rays.size();
-  raw.bytes.resize(raw.rows * stride);
-  for (std::size_t begin = 0; begin < raw.rows; begin += kBlock) {
-    const std::size_t end = std::min(begin + kBlock, raw.rows);
-    std::byte* row = raw.bytes.data() + begin * stride;
-    check(rays, begin, end);
-    if (rays_) {
-      single_ ? encode_rays<float>(rays, begin, end, stride, row)
-              : encode_rays<double>(rays, begin, end, stride, row);
-    } else {
-      single_ ? encode_points<float>(rays, begin, end, layout_->columns(), row)
-              : encode_points<double>(rays, begin, end, layout_->columns(), row);
-    }
-    for (std::size_t c = 0; c < rays.extras.size(); ++c) {
-      encode_extra(rays.extras[c], begin, end, stride, row + layout_->extra(c));
-    }
+  encode_all(
+      rays, rays.size(), [](std::size_t i) { return i; }, raw);
+}
+
+void PlyEncoder::encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const {
+  encode_all(
+      rays, rows.size(), [rows](std::size_t i) { return std::size_t{rows[i]}; }, raw);
+}
+
+template <class RowAt>
+void PlyEncoder::encode_all(const RayCloud& rays, std::size_t count, const RowAt& row_at,
+                            RawChunk& raw) const {
+  const RowColumns& columns = layout_->columns();
+  const std::size_t stride = columns.row_bytes;
+  raw.rows = count;
+  raw.bytes.resize(count * stride);
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, count);
+    std::byte* out = raw.bytes.data() + begin * stride;
+    const auto encode_as = [&]<class Real>(Real) {
+      return rays_ ? encode_rays<Real>(rays, row_at, begin, end, safe_, stride, out)
+                   : encode_points<Real>(rays, row_at, begin, end, safe_, columns, out);
+    };
+    const bool safe = single_ ? encode_as(float{}) : encode_as(double{});
+    for (std::size_t i = begin; i < end && !safe; ++i)
+      check_ray(rays, row_at(i));
+    for (std::size_t c = 0; c < rays.extras.size(); ++c)
+      encode_extra(rays.extras[c], row_at, begin, end, stride, out + layout_->extra(c));
   }
 }
 
-/// Throws if a value cannot be stored. Nearly always a look at the magnitudes is enough.
-void PlyEncoder::check(const RayCloud& rays, std::size_t begin, std::size_t end) const {
-  const double* to = rays.ends.data()->data();
-  const double* from = rays.starts.data()->data();
-  std::size_t safe = 0;  // counted rather than compared one by one, which compilers vectorise
-  for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
-    safe += static_cast<std::size_t>(std::abs(to[j]) < safe_) +
-            static_cast<std::size_t>(std::abs(from[j] - to[j]) < safe_);
-  }
-  std::size_t finite = 0;
-  for (std::size_t i = begin; i < end; ++i)
-    finite += static_cast<std::size_t>(std::isfinite(rays.times[i]));
-  if (safe == 6 * (end - begin) && finite == end - begin) return;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (!std::isfinite(rays.times[i])) fail_not_finite();
-    for (std::size_t j = 3 * i; j < 3 * i + 3; ++j) {
-      check_value(to[j]);
-      if (rays_) check_value(from[j] - to[j]);
-    }
+/// Throws if a value cannot be stored.
+void PlyEncoder::check_ray(const RayCloud& rays, std::size_t row) const {
+  if (!std::isfinite(rays.times[row])) fail_not_finite();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    check_value(rays.ends[row][axis]);
+    if (rays_) check_value(rays.starts[row][axis] - rays.ends[row][axis]);
   }
 }
 
@@ -254,22 +285,27 @@ void PlyEncoder::fail_not_finite() const {
 }
 
 void PlyEncoder::reflect(RayCloud& rays) const {
-  for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
-    const std::size_t end = std::min(begin + kBlock, rays.size());
-    check(rays, begin, end);
-    double* to = rays.ends.data()->data();
-    double* from = rays.starts.data()->data();
-    const auto round = [&]<class Real>(Real) {
-      for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
-        const auto stored_end = static_cast<Real>(to[j]);
-        const auto stored_ray = static_cast<Real>(from[j] - to[j]);
-        to[j] = static_cast<double>(stored_end);
-        from[j] = static_cast<double>(stored_end) + static_cast<double>(stored_ray);
+  single_ ? reflect_as<float>(rays) : reflect_as<double>(rays);
+}
+
+template <class Real>
+void PlyEncoder::reflect_as(RayCloud& rays) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    double* to = rays.ends[i].data();
+    double* from = rays.starts[i].data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double way = from[axis] - to[axis];
+      const bool good = std::abs(to[axis]) < safe_ && std::abs(way) < safe_;
+      if (!good) {
+        check_value(to[axis]);
+        check_value(way);
       }
-    };
-    single_ ? round(float{}) : round(double{});
-    for (std::size_t i = begin; i < end; ++i)
-      rays.colours[i].intensity = alpha_of(rays, i);
+      const auto stored_end = static_cast<double>(static_cast<Real>(to[axis]));
+      to[axis] = stored_end;
+      from[axis] = stored_end + static_cast<double>(static_cast<Real>(way));
+    }
+    if (!std::isfinite(rays.times[i])) fail_not_finite();
+    rays.colours[i].intensity = alpha_of(rays, i);
   }
 }
 

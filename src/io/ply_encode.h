@@ -4,7 +4,9 @@
 #include <raycloud/core/ray_stream.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace ray {
@@ -24,12 +26,18 @@ class PlyEncoder {
 
   /// As RaySink::encode.
   void encode(const RayCloud& rays, RawChunk& raw) const;
+  /// As RaySink::encode_rows.
+  void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const;
   /// What encoding and decoding would make of rays, without the bytes. Throws as `encode` does.
   void reflect(RayCloud& rays) const;
 
  private:
   class Layout;
-  void check(const RayCloud& rays, std::size_t begin, std::size_t end) const;
+  template <class RowAt>
+  void encode_all(const RayCloud& rays, std::size_t count, const RowAt& row_at, RawChunk& raw) const;
+  template <class Real>
+  void reflect_as(RayCloud& rays) const;
+  void check_ray(const RayCloud& rays, std::size_t row) const;
   void check_value(double value) const;
   [[noreturn]] void fail_not_finite() const;
 

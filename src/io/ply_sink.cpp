@@ -22,6 +22,9 @@ class PlySink final : public RaySink {
   }
 
   void encode(const RayCloud& rays, RawChunk& raw) const override { encoder_.encode(rays, raw); }
+  void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    encoder_.encode_rows(rays, rows, raw);
+  }
 
   void write(const RawChunk& raw) override {
     file_.write(raw.bytes);

@@ -138,6 +138,10 @@ class PlySource final : public RaySource {
     std::vector<std::byte> scratch;
     return decoder_.decode(rows_->unpack(raw, scratch), rays);
   }
+  std::size_t decode_times(const RawChunk& raw, std::vector<double>& times) const override {
+    std::vector<std::byte> scratch;
+    return decoder_.decode_times(rows_->unpack(raw, scratch), times);
+  }
 
  private:
   /// Learns all about the file; the decoder is what remains to be made of it.

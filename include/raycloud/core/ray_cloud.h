@@ -38,6 +38,9 @@ struct RayCloud {
   /// Keeps the rows where `mask` is not 0, in order. Precondition: one byte per ray.
   void select(std::span<const std::uint8_t> mask);
 
+  /// Replaces all by the given rows of `from`, another cloud, in the given order, with all its columns.
+  void assign_rows(const RayCloud& from, std::span<const std::uint32_t> rows);
+
   /// Adds the rows of `other`. Columns are matched by name: the result has the columns of both, with zeros
   /// where one of them has none. Throws Error(wrong_content) if a column of the same name has another type.
   void append(const RayCloud& other);

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ray {
@@ -36,6 +37,10 @@ class RaySource {
   /// Rows with a NaN or infinite coordinate or time are left out; returns how many were. Thread-safe.
   virtual std::size_t decode(const RawChunk& raw, RayCloud& rays) const = 0;
 
+  /// The times of the rays that `decode` would give, and what it would return; a source may be quicker at
+  /// that.
+  virtual std::size_t decode_times(const RawChunk& raw, std::vector<double>& times) const;
+
   /// Starts again at the first ray.
   virtual void rewind() = 0;
 };
@@ -54,6 +59,9 @@ class RaySink {
 
   /// As `encode`, where nobody needs `rays` any more: a sink may take their memory instead of copying it.
   virtual void consume(RayCloud& rays, RawChunk& raw) const { encode(rays, raw); }
+
+  /// As `encode`, of the given rows of `rays` in the given order; a sink may do without a copy of them.
+  virtual void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const;
 
   /// Adds an encoded piece. Called by one thread at a time, in order. Throws Error(file_access) on a full
   /// disk.

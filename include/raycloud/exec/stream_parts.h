@@ -9,27 +9,33 @@
 
 namespace ray {
 
-/// Rays on their way to one sink. Kept from chunk to chunk, so that what `rays` and `raw` have allocated is
-/// used again.
+/// Rays on their way to one sink: rows of the chunk, or rays of its own. Kept from chunk to chunk, so that
+/// what it has allocated is used again.
 struct StreamPart {
   RaySink* sink = nullptr;
+  bool of_chunk = false;            ///< `rows` says which; otherwise they are in `rays`
+  std::vector<std::uint32_t> rows;  ///< of the chunk, in any order
   RayCloud rays;
   RawChunk raw;
+
+  [[nodiscard]] std::size_t size() const { return of_chunk ? rows.size() : rays.size(); }
 };
 
-/// For each chunk: `map(rays, parts)` on any thread, which returns a value; then, in file order and one at a
-/// time, `fold(value, parts)`; then the sink of every part encodes on any thread and writes in order, the
-/// parts of a chunk one after the other. `parts` holds what an earlier chunk left there: both functions must
-/// set what they use. Does not finish the sinks. Memory: pipeline_slots(context) chunks with their parts.
+/// For each chunk: `map(rays, parts)` on any thread, which may change the chunk and returns a value; then, in
+/// file order and one at a time, `fold(value, parts)`; then the sink of every part encodes on any thread and
+/// writes in order, the parts of a chunk one after the other. `parts` holds what an earlier chunk left there:
+/// both functions must set what they use. Does not finish the sinks. Memory: pipeline_slots(context) chunks
+/// with their parts.
 template <class Map, class Fold>
 StreamCounts stream_parts(const Context& context, RaySource& source, const Map& map, const Fold& fold) {
-  using Value = decltype(map(std::declval<const RayCloud&>(), std::declval<std::vector<StreamPart>&>()));
+  using Value = decltype(map(std::declval<RayCloud&>(), std::declval<std::vector<StreamPart>&>()));
   struct Item {
     RawChunk raw;
     RayCloud rays;
     Value value{};
     std::vector<StreamPart> parts;
     std::size_t dropped = 0;
+    std::size_t rays_in = 0;
   };
   std::vector<Item> items(pipeline_slots(context));
   StreamCounts counts;
@@ -38,20 +44,25 @@ StreamCounts stream_parts(const Context& context, RaySource& source, const Map& 
   stages.push_back({Mode::parallel, [&](std::size_t slot) {
                       Item& item = items[slot];
                       item.dropped = source.decode(item.raw, item.rays);
-                      item.value = map(std::as_const(item.rays), item.parts);
+                      item.rays_in = item.rays.size();
+                      item.value = map(item.rays, item.parts);
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {
                       Item& item = items[slot];
-                      counts.rays_in += item.rays.size();
+                      counts.rays_in += item.rays_in;
                       counts.dropped += item.dropped;
                       fold(item.value, item.parts);
                       for (const StreamPart& part : item.parts)
-                        counts.rays_out += part.rays.size();
+                        counts.rays_out += part.size();
                       if (context.progress != nullptr) context.progress->advance(item.raw.rows);
                     }});
   stages.push_back({Mode::parallel, [&](std::size_t slot) {
-                      for (StreamPart& part : items[slot].parts)
-                        part.sink->consume(part.rays, part.raw);
+                      for (StreamPart& part : items[slot].parts) {
+                        if (part.of_chunk)
+                          part.sink->encode_rows(items[slot].rays, part.rows, part.raw);
+                        else
+                          part.sink->consume(part.rays, part.raw);
+                      }
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {
                       for (const StreamPart& part : items[slot].parts)

@@ -16,6 +16,7 @@
 #include <raycloud/core/units.h>
 #include <raycloud/exec/stream.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -29,9 +30,10 @@ class SplitRule {
   /// The extra columns of both sides: those of the source, and `clipped` if the rule cuts rays. Throws
   /// Error(wrong_content) if it does and the source has a column of that name that is not uint8.
   [[nodiscard]] virtual std::vector<ColumnInfo> columns(std::vector<ColumnInfo> source) const = 0;
-  /// Replaces what `inside` and `outside` held by the two sides of `rays`, in the order of `rays`. Neither
-  /// may be `rays` itself.
-  virtual void apply(const RayCloud& rays, RayCloud& inside, RayCloud& outside) const = 0;
+  /// Replaces what `inside` and `outside` held by the rows of `rays` on either side, in their order. Where
+  /// the rule cuts, `rays` gets the columns of columns(), and pieces of rays as further rows.
+  virtual void apply(RayCloud& rays, std::vector<std::uint32_t>& inside,
+                     std::vector<std::uint32_t>& outside) const = 0;
 };
 using SplitRulePtr = std::unique_ptr<const SplitRule>;
 

@@ -7,7 +7,7 @@ namespace ray {
 
 struct ReadOptions {
   /// Most rays in one chunk, at least 1. Rows too long for a buffer of 64 MiB come in smaller chunks.
-  std::size_t chunk_rays = 32768;
+  std::size_t chunk_rays = 8192;
   /// The file is about to be replaced, so what has been read of it need not stay in the page cache. Freeing
   /// it on the way is faster than all at once when the last reader closes it.
   bool will_be_replaced = false;
