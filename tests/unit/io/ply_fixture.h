@@ -4,6 +4,8 @@
 #include <raycloud/core/error.h>
 #include <raycloud/core/ray_stream.h>
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -122,13 +124,18 @@ struct ReadBack {
   std::size_t dropped = 0;
 };
 
+/// Times read alone must be those of the rays.
 inline ReadBack read_rest(RaySource& source) {
   ReadBack result;
   result.rays.set_schema(source.info().extras);
   RawChunk raw;
   RayCloud chunk;
+  std::vector<double> times;
   while (source.fetch(raw)) {
-    result.dropped += source.decode(raw, chunk);
+    const std::size_t dropped = source.decode(raw, chunk);
+    EXPECT_EQ(source.decode_times(raw, times), dropped);
+    EXPECT_EQ(times, chunk.times);
+    result.dropped += dropped;
     result.rays.append(chunk);
   }
   return result;

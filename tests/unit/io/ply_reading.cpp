@@ -282,6 +282,38 @@ TEST_F(PlyText, BinaryDataMayBeginWithALineEnd) {
   }
 }
 
+// The layout of our own files has a loop of its own.
+TEST_F(PlyText, RowsOfOurOwnLayoutThatAreNotFiniteAreLeftOut) {
+  const std::size_t real_sizes[] = {4, 8};
+  for (const std::size_t real : real_sizes) {
+    RayCloud cloud = random_cloud(3, {.rays = 100, .float_coordinates = true});
+    CloudInfo info;
+    info.precision = real == 4 ? Precision::single : Precision::double_;
+    const auto path = scratch_.path("ours.ply");
+    write_all(*create_ply(path, info), cloud);
+    std::string bytes = read_file(path);
+    const std::size_t data = bytes.find("end_header\n") + 11, row = 6 * real + 12;
+    const auto spoil = [&](std::size_t ray, std::size_t at, std::size_t size) {
+      // All ones are NaN; with the low bits cleared, infinity.
+      std::string value(size, ray % 2 == 0 ? '\xff' : '\0');
+      value[size - 1] = '\x7f';
+      value[size - 2] = static_cast<char>(size == 4 ? 0x80 : 0xf0);
+      bytes.replace(data + ray * row + at, size, value);
+    };
+    spoil(10, real, real);          // y
+    spoil(21, 3 * real, 8);         // time
+    spoil(32, 4 * real + 8, real);  // ny
+    spoil(33, 5 * real + 8, real);  // nz
+    std::ofstream(path, std::ios::binary) << bytes;
+    const ReadBack result = read_rest(*open_ply(path, {.chunk_rays = 32}));
+    EXPECT_EQ(result.dropped, 4u);
+    std::vector<std::uint8_t> mask(100, 1);
+    mask[10] = mask[21] = mask[32] = mask[33] = 0;
+    cloud.select(mask);
+    EXPECT_TRUE(same_bits(result.rays, cloud));
+  }
+}
+
 TEST_F(PlyText, ZerosKeepTheirSign) {
   const auto ends = read(header(1) + "-0.0 0.0 -0 0 0 2\n").rays.ends;
   EXPECT_TRUE(std::signbit(ends[0].x()));

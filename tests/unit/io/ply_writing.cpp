@@ -52,6 +52,49 @@ RC_GTEST_PROP(PlyWriting, ExactFloatsComeBackWithEveryBit, ()) {
   }
 }
 
+/// Chosen rows, some twice, go to a file as if they had been gathered first: a loop of its own.
+RC_GTEST_PROP(PlyWriting, RowsOfAChunkAreWrittenAsTheirCopyWouldBe, ()) {
+  const RayCloud cloud =
+      random_cloud(*rc::gen::arbitrary<std::uint64_t>(),
+                   {.rays = *rc::gen::inRange<std::size_t>(1, 2000), .extras = schema_of_every_type()});
+  const auto rows = *rc::gen::container<std::vector<std::uint32_t>>(
+      rc::gen::inRange<std::uint32_t>(0, static_cast<std::uint32_t>(cloud.size())));
+  RayCloud gathered;
+  gathered.set_schema(schema_of(cloud));
+  for (const std::uint32_t row : rows) {
+    RayCloud one = cloud;
+    std::vector<std::uint8_t> mask(cloud.size(), 0);
+    mask[row] = 1;
+    one.select(mask);
+    gathered.append(one);
+  }
+  const Scratch scratch;
+  for (const Precision precision : {Precision::single, Precision::double_}) {
+    for (const auto& create : {create_ply, create_ply_points}) {
+      const auto sink = create(scratch.path("a.ply"), info_of(cloud, precision), WriteOptions{});
+      RawChunk chosen, copied;
+      sink->encode_rows(cloud, rows, chosen);
+      sink->encode(gathered, copied);
+      RC_ASSERT(chosen.rows == copied.rows);
+      RC_ASSERT(chosen.bytes == copied.bytes);
+    }
+  }
+}
+
+TEST(PlyWriting, OnlyChosenRowsMustFitTheFile) {
+  const Scratch scratch;
+  RayCloud cloud = random_cloud(4, {.rays = 1000});
+  cloud.ends[700].x() = 6900000.017;
+  cloud.times[800] = std::numeric_limits<double>::infinity();
+  const auto sink = create_ply(scratch.path("a.ply"), info_of(cloud, Precision::single));
+  RawChunk raw;
+  const std::vector<std::uint32_t> good{1, 699, 701, 999}, far{1, 700}, endless{800};
+  sink->encode_rows(cloud, good, raw);
+  EXPECT_EQ(raw.rows, 4u);
+  EXPECT_THROW(sink->encode_rows(cloud, far, raw), PrecisionLoss);
+  EXPECT_THROW(sink->encode_rows(cloud, endless, raw), Error);
+}
+
 /// Any float of ordinary size, of any fraction.
 float any_float(int largest_exponent) {
   const int mantissa = *rc::gen::inRange(-(1 << 24), 1 << 24);
