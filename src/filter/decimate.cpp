@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ray {
@@ -125,9 +126,7 @@ StreamCounts decimate_every(const Context& context, RaySource& source, RaySink& 
   return stream(
       context, source, &sink, [](const RayCloud&) { return Nothing{}; },
       [&](RayCloud& rays, Nothing) {
-        const std::size_t count = rays.size();
-        rays.select(every(n, passed, count));
-        passed += count;
+        return every(n, std::exchange(passed, passed + rays.size()), rays.size());
       });
 }
 

@@ -134,7 +134,7 @@ StreamCounts decimate_by_range(const Context& context, RaySource& source, RaySin
   std::uint64_t row = 0;
   StreamCounts counts = stream(
       context, source, &sink, [&](const RayCloud& rays) { return cubes_of(rays, per_metre); },
-      [&](RayCloud& rays, const std::vector<Cube>& cubes) {
+      [&](const RayCloud&, const std::vector<Cube>& cubes) {
         Mask too_short(cubes.size());
         for (std::size_t i = 0; i < cubes.size(); i++) {
           too_short[i] = cubes[i].level == Cube::kNone ? 1 : 0;
@@ -142,14 +142,12 @@ StreamCounts decimate_by_range(const Context& context, RaySource& source, RaySin
         }
         kept.set(row, too_short);
         row += cubes.size();
-        if (is_short) {
-          rays.resize(0);
-          return;
-        }
-        rays.select(keep_unoccupied(occupied, cubes));
+        if (is_short) return Mask(cubes.size());
+        Mask mask = keep_unoccupied(occupied, cubes);
         settled = row;
         is_short = occupied.memory() > budget;
         if (is_short) occupied.clear();
+        return mask;
       });
   if (!is_short) return counts;
   for (std::size_t level = 0; level < kLevels; level++) {

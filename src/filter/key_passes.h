@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ray {
@@ -45,12 +46,8 @@ inline std::uint64_t write_rows(const Context& context, RaySource& source, RaySi
   const StreamCounts counts = stream(
       context, source, &sink, [](const RayCloud&) { return Nothing{}; },
       [&](RayCloud& rays, Nothing) {
-        const std::size_t count = rays.size();
-        if (row + count <= settled)
-          rays.resize(0);
-        else
-          rays.select(kept.mask(row, count));
-        row += count;
+        const std::uint64_t first = std::exchange(row, row + rays.size());
+        return row <= settled ? std::vector<std::uint8_t>(rays.size()) : kept.mask(first, rays.size());
       });
   return counts.rays_out;
 }
@@ -77,15 +74,15 @@ StreamCounts keep_by_keys(const Context& context, RaySource& source, RaySink& si
     return mask;
   };
   StreamCounts counts = stream(context, source, &sink, keys_of, [&](RayCloud& rays, const Keys& keys) {
-    const std::vector<std::uint8_t> mask = judge(rays, keys);
+    std::vector<std::uint8_t> mask = judge(rays, keys);
     if (range.is_all()) {
-      rays.select(mask);
       settled = row;
     } else {
       kept.set(row - mask.size(), mask);
-      rays.resize(0);
+      std::fill(mask.begin(), mask.end(), std::uint8_t{0});
     }
     shrink_to_budget(rule, budget, range);
+    return mask;
   });
   if (range.is_all()) return counts;
   while (range.end < ShardRange::kShards) {

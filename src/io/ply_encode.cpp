@@ -288,24 +288,30 @@ void PlyEncoder::reflect(RayCloud& rays) const {
   single_ ? reflect_as<float>(rays) : reflect_as<double>(rays);
 }
 
+/// Block by block, in loops that compilers vectorise.
 template <class Real>
 void PlyEncoder::reflect_as(RayCloud& rays) const {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    double* to = rays.ends[i].data();
-    double* from = rays.starts[i].data();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double way = from[axis] - to[axis];
-      const bool good = std::abs(to[axis]) < safe_ && std::abs(way) < safe_;
-      if (!good) {
-        check_value(to[axis]);
-        check_value(way);
-      }
-      const auto stored_end = static_cast<double>(static_cast<Real>(to[axis]));
-      to[axis] = stored_end;
-      from[axis] = stored_end + static_cast<double>(static_cast<Real>(way));
+  double* to = rays.ends.data()->data();
+  double* from = rays.starts.data()->data();
+  for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, rays.size());
+    SafeCount safe(safe_);
+    for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
+      safe.add(to[j]);
+      safe.add(from[j] - to[j]);
     }
-    if (!std::isfinite(rays.times[i])) fail_not_finite();
-    rays.colours[i].intensity = alpha_of(rays, i);
+    for (std::size_t i = begin; i < end; ++i)
+      safe.add_time(rays.times[i]);
+    for (std::size_t i = begin; i < end && safe.count() != 7 * (end - begin); ++i)
+      check_ray(rays, i);
+    for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
+      const auto stored_end = static_cast<Real>(to[j]);
+      const auto stored_ray = static_cast<Real>(from[j] - to[j]);
+      to[j] = static_cast<double>(stored_end);
+      from[j] = static_cast<double>(stored_end) + static_cast<double>(stored_ray);
+    }
+    for (std::size_t i = begin; i < end; ++i)
+      rays.colours[i].intensity = alpha_of(rays, i);
   }
 }
 

@@ -6,7 +6,10 @@
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/progress.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace ray {
@@ -17,19 +20,25 @@ struct StreamCounts {
   std::uint64_t dropped = 0;   ///< rows left out because of a NaN or infinite value
 };
 
+/// The rows where a mask is not 0.
+[[nodiscard]] std::vector<std::uint32_t> rows_of(std::span<const std::uint8_t> mask);
+
 /// For each chunk: `map(rays)` on any thread, which may change the chunk and returns a value; then, in file
 /// order and one at a time, `fold(rays, value)`, which may change the chunk too; then the sink, if there is
-/// one, encodes on any thread and writes in order. Does not call `sink->finish()`. The result depends neither
-/// on threads nor on how the source cuts its chunks if `map` looks at one ray at a time and `fold` goes
-/// through the rows in order. Memory: pipeline_slots(context) chunks.
+/// one, encodes on any thread and writes in order. A fold that returns a mask, one byte for each ray, sends
+/// only the rays on where it is not 0, at no cost in the serial part. Does not call `sink->finish()`. The
+/// result depends neither on threads nor on how the source cuts its chunks if `map` looks at one ray at a
+/// time and `fold` goes through the rows in order. Memory: pipeline_slots(context) chunks.
 template <class Map, class Fold>
 StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, const Map& map,
                     const Fold& fold) {
   using Value = decltype(map(std::declval<RayCloud&>()));
+  constexpr bool kMasks = !std::is_void_v<decltype(fold(std::declval<RayCloud&>(), std::declval<Value&>()))>;
   struct Item {
     RawChunk raw;
     RayCloud rays;
     Value value{};
+    std::vector<std::uint8_t> mask;
     std::size_t dropped = 0;
     std::size_t rays_in = 0;
   };
@@ -45,15 +54,28 @@ StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, co
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {
                       Item& item = items[slot];
-                      fold(item.rays, item.value);
+                      std::size_t rays_out = 0;
+                      if constexpr (kMasks) {
+                        item.mask = fold(item.rays, item.value);
+                        rays_out = item.mask.size() - static_cast<std::size_t>(
+                                                          std::count(item.mask.begin(), item.mask.end(), 0));
+                      } else {
+                        fold(item.rays, item.value);
+                        rays_out = item.rays.size();
+                      }
                       counts.rays_in += item.rays_in;
                       counts.dropped += item.dropped;
-                      counts.rays_out += item.rays.size();
+                      counts.rays_out += rays_out;
                       if (context.progress != nullptr) context.progress->advance(item.raw.rows);
                     }});
   if (sink != nullptr) {
-    stages.push_back(
-        {Mode::parallel, [&](std::size_t slot) { sink->consume(items[slot].rays, items[slot].raw); }});
+    stages.push_back({Mode::parallel, [&](std::size_t slot) {
+                        Item& item = items[slot];
+                        if constexpr (kMasks)
+                          sink->encode_rows(item.rays, rows_of(item.mask), item.raw);
+                        else
+                          sink->consume(item.rays, item.raw);
+                      }});
     stages.push_back({Mode::ordered, [&](std::size_t slot) { sink->write(items[slot].raw); }});
   }
   if (context.progress != nullptr) context.progress->begin("rays", source.info().ray_count.value_or(0));
