@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 namespace ray::tools {
 namespace {
@@ -17,6 +18,17 @@ std::string centimetres(Metres width) {
   return text.str();
 }
 
+/// Without the zeros before the number of rays.
+std::string readable(std::string note) {
+  constexpr std::string_view kOf = " of ";
+  const std::size_t of = note.rfind(kOf);
+  if (of == std::string::npos) return note;
+  const std::size_t digits = of + kOf.size();
+  const std::size_t last_digit = std::min(note.find(' ', digits), note.size()) - 1;
+  note.erase(digits, std::min(note.find_first_not_of('0', digits), last_digit) - digits);
+  return note;
+}
+
 std::string form(const cli::Match& match) {
   const std::string& usage = match.usage();
   if (usage == "every") return std::to_string(match.integer("N")) + " rays";
@@ -28,17 +40,23 @@ std::string form(const cli::Match& match) {
 
 }  // namespace
 
-std::string decimation_note(const cli::Match& match, const CloudInfo& full) {
-  const std::string start = kStart + form(match);
-  return full.ray_count ? start + " of " + std::to_string(*full.ray_count) + " rays" : start;
+std::string decimation_note(const cli::Match& match, std::optional<std::uint64_t> full_rays) {
+  constexpr std::size_t kDigits = 12;  // as many as the header of a PLY file has for them
+  const std::string count = std::to_string(full_rays.value_or(0));
+  const std::string zeros(count.size() < kDigits ? kDigits - count.size() : 0, '0');
+  return kStart + form(match) + " of " + zeros + count + " rays";
 }
 
 void check_decimation(const CloudInfo& decimated, const std::string& path, const std::string& note) {
-  const auto is_note = [](const std::string& line) { return line.starts_with(kStart); };
-  const auto& lines = decimated.comments;
-  const auto last = std::find_if(lines.rbegin(), lines.rend(), is_note);
-  if (last == lines.rend() || std::find(lines.begin(), lines.end(), note) != lines.end()) return;
-  throw Error(ErrorCode::wrong_content, path + ": was " + *last + ", which cannot be restored as " + note);
+  const std::string wanted = readable(note);
+  std::optional<std::string> last;
+  for (const std::string& line : decimated.comments) {
+    if (!line.starts_with(kStart)) continue;
+    last = readable(line);
+    if (last == wanted) return;
+  }
+  if (!last) return;
+  throw Error(ErrorCode::wrong_content, path + ": was " + *last + ", which cannot be restored as " + wanted);
 }
 
 }  // namespace ray::tools

@@ -70,7 +70,7 @@ void run(const Match& match, Session& session) {
   const auto decimated = ray::open_ray_cloud(decimated_name);
   const auto full = ray::open_ray_cloud(full_name);
   ray::tools::check_decimation(decimated->info(), decimated_name,
-                               ray::tools::decimation_note(match, full->info()));
+                               ray::tools::decimation_note(match, full->info().ray_count));
   const auto decimation =
       match.usage() == "width"
           ? ray::Decimation{match.length("WIDTH")}

@@ -1,5 +1,5 @@
+#include "by_ray_step.h"
 #include "pipe_steps.h"
-#include "stepped_source.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/io/ply_channel.h>
@@ -37,9 +37,9 @@ class PassingFile {
 /// A source that knows how many rays it has, as a file would: they are counted first if they must be.
 class CountedSource final : public RaySource {
  public:
-  CountedSource(const Context& context, RaySource& source, bool needs_count)
+  CountedSource(const Context& context, RaySource& source, bool count)
       : source_(source), info_(source.info()) {
-    if (!needs_count || info_.ray_count) return;
+    if (!count || info_.ray_count) return;
     info_.ray_count = stream(
                           context, source, nullptr, [](const RayCloud&) { return Nothing{}; },
                           [](const RayCloud&, Nothing) {})
@@ -74,14 +74,23 @@ class Section {
   Section(const Context& context, std::span<const PipeStep> steps, Lessons& lessons, std::size_t first,
           std::size_t last)
       : context_(context), steps_(steps), lessons_(lessons), first_(first), reports_(last - first) {
+    // Steps by ray go with a driver: with the one behind them, as part of its reading, or at the end with the
+    // one before, as part of its writing.
+    const auto by_ray = [&](std::size_t i) {
+      return steps[i].step->by_ray != nullptr && steps[i].step->by_ray(steps[i].match);
+    };
+    std::size_t last_driver = last - 1;
+    while (last_driver > first && by_ray(last_driver))
+      --last_driver;
+    if (by_ray(last_driver)) last_driver = last - 1;  // all are
     std::size_t begin = first;
-    for (std::size_t i = first; i < last; ++i) {
-      const auto by_ray = steps[i].step->by_ray;
-      if (i + 1 < last && by_ray != nullptr && by_ray(steps[i].match)) continue;
+    for (std::size_t i = first; i <= last_driver; ++i) {
+      if (i < last_driver && by_ray(i)) continue;
       stages_.emplace_back().first = begin;
       stages_.back().driver = i;
       begin = i + 1;
     }
+    end_ = last;
   }
 
   /// True when done, with the reports; false when it should be tried again. Throws what cannot be mended.
@@ -140,20 +149,21 @@ class Section {
 
   StepReport drive(const Context& context, std::size_t i, RaySource& source, const path& output) {
     const PipeStep& step = steps_[stages_[i].driver];
-    OutputPrecision& precision = lessons_.precision[stages_[i].driver];
     std::vector<std::unique_ptr<RaySink>> sinks(step.step->outputs.size());
     const SinkMaker make = [&](std::size_t number, const CloudInfo& given) -> RaySink& {
-      CloudInfo info = precision.widened(number, given);
-      info.history.push_back(step.match.history());
       if (number == step.output)
-        sinks[number] = precision.watch(number, next_sink(i, info, output));
+        sinks[number] = next_sink(i, given, output);
       else
         sinks[number] = std::make_unique<NoSink>();
       return *sinks[number];
     };
-    CountedSource counted(context, source, step.step->needs_count);
+    const bool can_amend = i + 1 == stages_.size() && output.extension() == ".ply";
+    CountedSource counted(context, source, step.step->tells_count && !can_amend);
     StepReport report = step.step->run(step.match, context, counted, make);
     sinks[step.output]->finish();
+    const bool is_last = i + 1 == stages_.size();
+    for (std::size_t one = 0; is_last && one < written_.size(); ++one)
+      reports_[stages_[i].driver + 1 + one - first_] = written_[one]->report();
     return report;
   }
 
@@ -166,11 +176,35 @@ class Section {
     }
   }
 
-  std::unique_ptr<RaySink> next_sink(std::size_t i, const CloudInfo& info, const path& output) {
-    if (i + 1 == stages_.size()) return create_ray_cloud(output, info);
+  /// For the output of the driver of stage `i` that goes on.
+  std::unique_ptr<RaySink> next_sink(std::size_t i, const CloudInfo& given, const path& output) {
+    if (i + 1 == stages_.size()) {
+      written_.clear();
+      return final_sink(stages_[i].driver, given, output);
+    }
+    OutputPrecision& precision = lessons_.precision[stages_[i].driver];
+    const PipeStep& step = steps_[stages_[i].driver];
+    CloudInfo info = precision.widened(step.output, given);
+    info.history.push_back(step.match.history());
     PlyChannel channel = make_ply_channel(info);
     stages_[i + 1].source.set_value(std::move(channel.source));
-    return std::move(channel.sink);
+    return precision.watch(step.output, std::move(channel.sink));
+  }
+
+  /// For what step number `from` gives, through the steps behind it, into the file.
+  std::unique_ptr<RaySink> final_sink(std::size_t from, const CloudInfo& given, const path& output) {
+    OutputPrecision& precision = lessons_.precision[from];
+    const PipeStep& step = steps_[from];
+    if (from + 1 == end_) {
+      CloudInfo info = precision.widened(step.output, given);
+      info.history.push_back(step.match.history());
+      return precision.watch(step.output, create_ray_cloud(output, info));
+    }
+    auto mirror = std::make_unique<StepMirror>(given, step, precision);
+    auto next = std::make_unique<ByRayStep>(mirror->info(), steps_[from + 1]);
+    written_.push_back(next.get());
+    auto sink = final_sink(from + 1, next->info(), output);
+    return std::make_unique<SteppedSink>(std::move(mirror), std::move(next), std::move(sink));
   }
 
   static Ending ending_of(const std::exception_ptr& error) {
@@ -212,6 +246,8 @@ class Section {
   std::size_t first_;
   std::vector<StepReport> reports_;
   std::deque<Stage> stages_;
+  std::size_t end_ = 0;                    // one past the last step
+  std::vector<const ByRayStep*> written_;  // the steps behind the last driver, owned by its sink
 };
 
 /// The first step from `first` on that must have a file before it, or the number of steps.

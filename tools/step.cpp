@@ -30,6 +30,7 @@ class WatchedSink final : public RaySink {
     watched([&] { sink_->encode_rows(rays, rows, raw); });
   }
   void write(const RawChunk& raw) override { sink_->write(raw); }
+  void amend(std::string_view comment, std::string_view by) override { sink_->amend(comment, by); }
   void finish() override { sink_->finish(); }
 
  private:

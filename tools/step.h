@@ -43,7 +43,7 @@ struct Step {
   /// Whether each ray is treated by itself, so that the step may be run on any piece of the cloud alone;
   /// absent: never.
   bool (*by_ray)(const cli::Match&) = nullptr;
-  bool needs_count = false;  ///< whether it must know the number of rays before the first
+  bool tells_count = false;  ///< whether its sink is told the number of rays of the source (RaySink::amend)
 };
 
 /// Remembers which of the outputs of a step need double precision, from one run of the step to the next.

@@ -5,6 +5,7 @@
 #include <raycloud/io/ply_cloud.h>
 
 #include <string>
+#include <string_view>
 
 namespace ray {
 namespace {
@@ -29,6 +30,16 @@ class PlySink final : public RaySink {
   void write(const RawChunk& raw) override {
     file_.write(raw.bytes);
     rows_ += raw.rows;
+  }
+
+  void amend(std::string_view comment, std::string_view by) override {
+    const std::string start = "comment ";
+    const auto at = encoder_.header().find(start + std::string(comment) + "\n");
+    if (at == std::string::npos || by.size() != comment.size()) {
+      throw Error(ErrorCode::usage,
+                  file_.path().string() + ": no comment of this length to amend: " + std::string(by));
+    }
+    file_.write_at(at + start.size(), by);
   }
 
   void finish() override {

@@ -69,13 +69,17 @@ StepReport run(const Match& match, const Context& context, RaySource& source, co
   if (match.usage() == "count" && match.integer("N") > kMost)
     match.reject("N", "a cube keeps at most " + std::to_string(kMost) + " points");
   CloudInfo info = source.info();
-  info.comments.push_back(decimation_note(match, source.info()));
-  return report_of(decimate(match, context, source, make(0, info)));
+  const std::string note = decimation_note(match, info.ray_count);
+  info.comments.push_back(note);
+  RaySink& sink = make(0, info);
+  const StreamCounts counts = decimate(match, context, source, sink);
+  if (!info.ray_count) sink.amend(note, decimation_note(match, counts.rays_in + counts.dropped));
+  return report_of(counts);
 }
 
 }  // namespace
 
 const Step kDecimateStep{
-    .command = kCommand, .outputs = {{"", "_decimated"}}, .run = run, .needs_count = true};
+    .command = kCommand, .outputs = {{"", "_decimated"}}, .run = run, .tells_count = true};
 
 }  // namespace ray::tools

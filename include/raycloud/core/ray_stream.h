@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace ray {
@@ -66,6 +67,10 @@ class RaySink {
   /// Adds an encoded piece. Called by one thread at a time, in order. Throws Error(file_access) on a full
   /// disk.
   virtual void write(const RawChunk& raw) = 0;
+
+  /// Replaces a comment that it was made with by another of the same length, for what is known only at the
+  /// end. Precondition: the target is a PLY file. Throws Error(usage) if there is no such comment.
+  virtual void amend(std::string_view comment, std::string_view by);
 
   /// Completes the target. Called once, after the last write.
   virtual void finish() = 0;
