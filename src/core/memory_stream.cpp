@@ -1,7 +1,6 @@
 #include <raycloud/core/memory_stream.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace ray {
@@ -29,10 +28,6 @@ void copy_rows(const std::vector<T>& from, std::size_t first, std::size_t rows, 
 }
 
 }  // namespace
-
-bool is_finite_ray(const RayCloud& rays, std::size_t i) {
-  return rays.starts[i].allFinite() && rays.ends[i].allFinite() && std::isfinite(rays.times[i]);
-}
 
 MemorySource::MemorySource(const RayCloud& cloud, std::size_t chunk_rays)
     : MemorySource(cloud, CloudInfo{}, chunk_rays) {
@@ -65,11 +60,7 @@ std::size_t MemorySource::decode(const RawChunk& raw, RayCloud& rays) const {
     const std::size_t bytes = raw.rows * to.stride();
     if (bytes != 0) std::memcpy(to.data(), cloud_.extras[i].data() + first * to.stride(), bytes);
   }
-  std::vector<std::uint8_t> valid(raw.rows);
-  for (std::size_t i = 0; i < raw.rows; ++i)
-    valid[i] = is_finite_ray(rays, i) ? 1 : 0;
-  rays.select(valid);
-  return raw.rows - rays.size();
+  return drop_not_finite(rays);
 }
 
 MemorySink::MemorySink(std::vector<ColumnInfo> extras) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace ray {
 
@@ -139,6 +140,23 @@ std::vector<ColumnInfo> schema_of(const RayCloud& rays) {
   for (const Column& column : rays.extras)
     schema.push_back(column.info());
   return schema;
+}
+
+bool is_finite_ray(const RayCloud& rays, std::size_t i) {
+  return rays.starts[i].allFinite() && rays.ends[i].allFinite() && std::isfinite(rays.times[i]);
+}
+
+std::size_t drop_not_finite(RayCloud& rays) {
+  double sum = 0.0;  // 0 · x is NaN for NaN and for infinity
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    sum += 0.0 * (rays.starts[i].sum() + rays.ends[i].sum() + rays.times[i]);
+  if (sum == 0.0) return 0;
+  const std::size_t before = rays.size();
+  std::vector<std::uint8_t> finite(before);
+  for (std::size_t i = 0; i < before; ++i)
+    finite[i] = is_finite_ray(rays, i) ? 1 : 0;
+  rays.select(finite);
+  return before - rays.size();
 }
 
 }  // namespace ray

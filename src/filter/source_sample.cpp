@@ -38,7 +38,10 @@ Picked pick_chunks(const Context& context, RaySource& source) {
     }
     picked.chunks.push_back(std::exchange(raw, {}));
   }
-  if (!last_is_picked) picked.chunks.push_back(std::move(last));
+  if (!last_is_picked) {
+    if (picked.chunks.size() == kMostChunks) picked.chunks.pop_back();
+    picked.chunks.push_back(std::move(last));
+  }
   return picked;
 }
 

@@ -27,7 +27,7 @@ struct SourceSample {
 /// Whether a value of the column is not zero.
 [[nodiscard]] bool is_recorded(const Column& column);
 
-/// Fetches all and decodes at most 5 chunks, the first and the last among them, evenly spread; leaves the
+/// Fetches all and decodes at most 4 chunks, the first and the last among them, evenly spread; leaves the
 /// source rewound. Deterministic. `intensity` is the name of a column, empty for none.
 [[nodiscard]] SourceSample sample_source(const Context& context, RaySource& source,
                                          const std::string& intensity);

@@ -104,18 +104,6 @@ void decode_column(std::span<const std::byte> records, std::size_t length, const
   }
 }
 
-std::size_t drop_invalid(RayCloud& rays) {
-  const std::size_t rows = rays.size();
-  std::vector<std::uint8_t> valid(rows);
-  std::size_t kept = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    valid[row] = std::isfinite(rays.times[row]) && rays.starts[row].allFinite() ? 1 : 0;
-    kept += valid[row];
-  }
-  if (kept < rows) rays.select(valid);
-  return rows - kept;
-}
-
 }  // namespace
 
 LasDecoder::LasDecoder(const LasHeader& header)
@@ -223,7 +211,7 @@ std::size_t LasDecoder::decode(std::span<const std::byte> records, bool wide_col
       rays.bounded[row] = rays.colours[row].intensity != 0 ? 1 : 0;
   for (std::size_t i = 0; i < columns_.size(); ++i)
     decode_column(records, record_length_, columns_[i], rays.extras[i]);
-  return drop_invalid(rays);
+  return drop_not_finite(rays);
 }
 
 }  // namespace ray

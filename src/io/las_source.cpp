@@ -95,8 +95,7 @@ class CompressedRecords final : public LasRecords {
   [[nodiscard]] std::size_t rows_from(std::uint64_t first) const override { return pieces_.rows_from(first); }
 
   void fetch(RawChunk& raw) override {
-    raw.bytes.clear();
-    if (pieces_.independent()) return;
+    if (pieces_.independent()) return;  // and what a sink left in the buffer saves it clearing one
     LazReader& reader = *idle_.front()->reader;
     raw.bytes.resize(raw.rows * reader.record_length());
     reader.read(raw.first_row, raw.bytes);

@@ -1,7 +1,5 @@
 #include "ply_decode.h"
 
-#include <raycloud/core/memory_stream.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -138,25 +136,6 @@ bool decode_standard_times(const std::byte* rows, std::size_t stride, std::vecto
   return sum == 0.0;
 }
 
-bool all_finite(const RayCloud& rays) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Eigen::Vector3d& start = rays.starts[i];
-    sum += zero_if_finite(start[0], start[1], start[2], rays.times[i]);
-  }
-  return sum == 0.0;
-}
-
-/// Leaves out rays that are not finite; returns how many.
-std::size_t drop_invalid(RayCloud& rays) {
-  std::vector<std::uint8_t> valid(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    valid[i] = is_finite_ray(rays, i) ? 1 : 0;
-  const std::size_t before = rays.size();
-  rays.select(valid);
-  return before - rays.size();
-}
-
 }  // namespace
 
 PlyDecoder::PlyDecoder(PlySchema schema, PlyLayout layout, std::array<double, 3> origin, PlyColourScale scale)
@@ -186,8 +165,7 @@ std::size_t PlyDecoder::decode(std::span<const std::byte> rows, RayCloud& rays) 
     if (!standard) decode_columns(rows.data(), begin, end, rays);
     decode_extras(rows.data(), begin, end, rays);
   }
-  if (!standard) finite = all_finite(rays);
-  return finite ? 0 : drop_invalid(rays);
+  return standard && finite ? 0 : drop_not_finite(rays);
 }
 
 std::size_t PlyDecoder::decode_times(std::span<const std::byte> rows, std::vector<double>& times) const {

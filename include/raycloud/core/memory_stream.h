@@ -39,7 +39,4 @@ class MemorySink final : public RaySink {
   bool finished_ = false;
 };
 
-/// True if every coordinate and the time of row `i` is finite.
-[[nodiscard]] bool is_finite_ray(const RayCloud& rays, std::size_t i);
-
 }  // namespace ray

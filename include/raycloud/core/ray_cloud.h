@@ -59,4 +59,10 @@ struct RayCloud {
 
 [[nodiscard]] std::vector<ColumnInfo> schema_of(const RayCloud& rays);
 
+/// True if every coordinate and the time of row `i` is finite.
+[[nodiscard]] bool is_finite_ray(const RayCloud& rays, std::size_t i);
+
+/// Leaves out the rays that are not finite and returns how many they were. Quick where there are none.
+std::size_t drop_not_finite(RayCloud& rays);
+
 }  // namespace ray

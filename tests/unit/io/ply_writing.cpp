@@ -81,6 +81,24 @@ RC_GTEST_PROP(PlyWriting, RowsOfAChunkAreWrittenAsTheirCopyWouldBe, ()) {
   }
 }
 
+TEST(PlyWriting, ACommentCanBeAmendedAtTheEnd) {
+  const Scratch scratch;
+  const RayCloud cloud = random_cloud(5, {.rays = 10});
+  CloudInfo info = info_of(cloud, Precision::double_);
+  info.comments = {"of 00 rays", "of 00 rays or so"};
+  const auto sink = create_ply(scratch.path("a.ply"), info);
+  RawChunk raw;
+  sink->encode(cloud, raw);
+  sink->write(raw);
+  EXPECT_THROW(sink->amend("of 0 rays", "of 7 rays"), Error);
+  EXPECT_THROW(sink->amend("of 00 rays", "of 123 rays"), Error);
+  sink->amend("of 00 rays", "of 10 rays");
+  sink->finish();
+  EXPECT_THAT(open_ply(scratch.path("a.ply"))->info().comments,
+              ::testing::ElementsAre("of 10 rays", "of 00 rays or so"));
+  EXPECT_TRUE(same_bits(read_cloud(scratch.path("a.ply")), cloud));
+}
+
 TEST(PlyWriting, OnlyChosenRowsMustFitTheFile) {
   const Scratch scratch;
   RayCloud cloud = random_cloud(4, {.rays = 1000});
