@@ -22,38 +22,37 @@ class RegionRule final : public SplitRule {
 
   void apply(RayCloud& rays, std::vector<std::uint32_t>& inside,
              std::vector<std::uint32_t>& outside) const override {
-    const std::array<std::vector<std::uint32_t>*, 2> parts{&inside, &outside};
-    for (std::vector<std::uint32_t>* part : parts)
-      part->clear();
+    // Of a convex region a ray has at most one piece inside and two outside.
+    inside.resize(rays.size());
+    outside.resize(2 * rays.size());
+    const std::array<std::uint32_t*, 2> parts{inside.data(), outside.data()};
+    std::array<std::size_t, 2> counts{};
+    const Region region = region_;  // in registers
     std::vector<CutPiece> pieces;
     std::vector<Stretch> way;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const std::uint32_t part = part_of(rays.starts[i], rays.ends[i], way);
-      if (way.empty()) {
-        parts[part]->push_back(static_cast<std::uint32_t>(i));
+      const bool starts_inside = region.contains(rays.starts[i]), ends_inside = region.contains(rays.ends[i]);
+      std::uint32_t part = ends_inside ? 0 : 1;
+      const bool stays = starts_inside == ends_inside && (ends_inside || Region::kConvexOutside);
+      if (!stays) part = way_through(region, rays.starts[i], rays.ends[i], stored_, way);
+      if (stays || way.empty()) {
+        parts[part][counts[part]++] = static_cast<std::uint32_t>(i);
         continue;
       }
       each_piece(rays.starts[i], rays.bounded[i] != 0, way,
                  [&](std::uint32_t piece_part, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                      std::uint8_t flags) {
-                   parts[piece_part]->push_back(static_cast<std::uint32_t>(rays.size() + pieces.size()));
+                   parts[piece_part][counts[piece_part]++] =
+                       static_cast<std::uint32_t>(rays.size() + pieces.size());
                    pieces.push_back({i, start, end, flags});
                  });
     }
+    inside.resize(counts[0]);
+    outside.resize(counts[1]);
     append_pieces(rays, pieces);
   }
 
  private:
-  /// As way_through; most rays are seen at once to stay on one side.
-  [[nodiscard]] std::uint32_t part_of(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
-                                      std::vector<Stretch>& way) const {
-    way.clear();
-    const bool starts_inside = region_.contains(start), ends_inside = region_.contains(end);
-    if (starts_inside && ends_inside) return 0;
-    if (Region::kConvexOutside && !starts_inside && !ends_inside) return 1;
-    return way_through(region_, start, end, stored_, way);
-  }
-
   Region region_;
   Precision stored_;
 };

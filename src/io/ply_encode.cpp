@@ -3,7 +3,9 @@
 #include <raycloud/core/error.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <string_view>
@@ -47,17 +49,20 @@ std::uint8_t alpha_of(const RayCloud& rays, std::size_t i) {
   return rays.bounded[i] != 0 ? std::max<std::uint8_t>(rays.colours[i].intensity, 1) : std::uint8_t{0};
 }
 
-/// Counts values that are certainly stored well enough. The comparisons have no branches.
-class SafeCount {
+/// Whether all values are certainly stored well enough, without branches: the sign of |value| - limit is set
+/// where the value is below, and not for NaN.
+class Safety {
  public:
-  explicit SafeCount(double limit) : limit_(limit) {}
-  void add(double value) { safe_ += std::abs(value) < limit_ ? 1 : 0; }
-  void add_time(double time) { safe_ += std::abs(time) <= std::numeric_limits<double>::max() ? 1 : 0; }
-  [[nodiscard]] std::size_t count() const { return safe_; }
+  explicit Safety(double limit) : limit_(limit) {}
+  void add(double value) { signs_ &= std::bit_cast<std::uint64_t>(std::abs(value) - limit_); }
+  void add_time(double time) {
+    signs_ &= std::bit_cast<std::uint64_t>(std::abs(time) - std::numeric_limits<double>::max());
+  }
+  [[nodiscard]] bool is_safe() const { return signs_ >> 63 != 0; }
 
  private:
   double limit_;
-  std::size_t safe_ = 0;
+  std::uint64_t signs_ = ~std::uint64_t{0};
 };
 
 /// The standard columns of rays in one go: this is what nearly all the time goes to. `row_at(i)` is the row
@@ -65,7 +70,7 @@ class SafeCount {
 template <class Real, class RowAt>
 bool encode_rays(const RayCloud& rays, const RowAt& row_at, std::size_t begin, std::size_t end, double limit,
                  std::size_t stride, std::byte* out) {
-  SafeCount safe(limit);
+  Safety safety(limit);
   for (std::size_t i = begin; i < end; ++i, out += stride) {
     const std::size_t row = row_at(i);
     const double* to = rays.ends[row].data();
@@ -73,13 +78,13 @@ bool encode_rays(const RayCloud& rays, const RowAt& row_at, std::size_t begin, s
     Real point[3], ray[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double way = from[axis] - to[axis];
-      safe.add(to[axis]);
-      safe.add(way);
+      safety.add(to[axis]);
+      safety.add(way);
       point[axis] = static_cast<Real>(to[axis]);
       ray[axis] = static_cast<Real>(way);
     }
     const double time = rays.times[row];
-    safe.add_time(time);
+    safety.add_time(time);
     Colour colour = rays.colours[row];
     colour.intensity = alpha_of(rays, row);
     std::memcpy(out, point, sizeof point);
@@ -87,7 +92,7 @@ bool encode_rays(const RayCloud& rays, const RowAt& row_at, std::size_t begin, s
     std::memcpy(out + sizeof point + 8, ray, sizeof ray);
     std::memcpy(out + 2 * sizeof point + 8, &colour, 4);
   }
-  return safe.count() == 7 * (end - begin);
+  return safety.is_safe();
 }
 
 template <class RowAt>
@@ -104,22 +109,22 @@ void encode_extra(const Column& column, const RowAt& row_at, std::size_t begin, 
 template <class Real, class RowAt>
 bool encode_points(const RayCloud& rays, const RowAt& row_at, std::size_t begin, std::size_t end,
                    double limit, const RowColumns& columns, std::byte* out) {
-  SafeCount safe(limit);
+  Safety safety(limit);
   for (std::size_t i = begin; i < end; ++i, out += columns.row_bytes) {
     const std::size_t row = row_at(i);
     Real point[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = rays.ends[row].data()[axis];
-      safe.add(value);
+      safety.add(value);
       point[axis] = static_cast<Real>(value);
     }
-    safe.add_time(rays.times[row]);
+    safety.add_time(rays.times[row]);
     std::memcpy(out, point, sizeof point);
     if (columns.time != RowColumns::kNone) std::memcpy(out + columns.time, &rays.times[row], 8);
     if (columns.colour != RowColumns::kNone) std::memcpy(out + columns.colour, &rays.colours[row], 3);
     if (columns.alpha != RowColumns::kNone) out[columns.alpha] = std::byte{alpha_of(rays, row)};
   }
-  return safe.count() == 4 * (end - begin);
+  return safety.is_safe();
 }
 
 }  // namespace
@@ -295,14 +300,14 @@ void PlyEncoder::reflect_as(RayCloud& rays) const {
   double* from = rays.starts.data()->data();
   for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, rays.size());
-    SafeCount safe(safe_);
+    Safety safety(safe_);
     for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
-      safe.add(to[j]);
-      safe.add(from[j] - to[j]);
+      safety.add(to[j]);
+      safety.add(from[j] - to[j]);
     }
     for (std::size_t i = begin; i < end; ++i)
-      safe.add_time(rays.times[i]);
-    for (std::size_t i = begin; i < end && safe.count() != 7 * (end - begin); ++i)
+      safety.add_time(rays.times[i]);
+    for (std::size_t i = begin; i < end && !safety.is_safe(); ++i)
       check_ray(rays, i);
     for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
       const auto stored_end = static_cast<Real>(to[j]);
