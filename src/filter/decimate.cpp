@@ -51,30 +51,58 @@ struct FewInCube {
 struct FirstThroughCube {
   static constexpr std::size_t kMostBricks = 1 << 20;  // at a time
   Metres width;
+  KnownBricks known;  // a part of what is in `bricks`, for those who look at later rays meanwhile
   VoxelTable<std::uint64_t> bricks = {};
 
   [[nodiscard]] CrossedCubes keys_of(const RayCloud& rays) const {
-    return crossed_cubes(rays.starts, rays.ends, width, kMostBricks);
+    return crossed_cubes(rays.starts, rays.ends, width, kMostBricks, &known);
   }
   void keep(const RayCloud& rays, const CrossedCubes& first, ShardRange range, Mask& mask) {
+    if (!known.has_centre() && rays.size() != 0) {
+      const VoxelIndex cube = voxel_index(rays.starts.front(), width);
+      known.centre_on({cube.x >> 2, cube.y >> 2, cube.z >> 2});
+    }
     see(first, range, mask);
     for (std::size_t done = first.done; done < rays.size();) {
       const CrossedCubes more = crossed_cubes(std::span(rays.starts).subspan(done),
-                                              std::span(rays.ends).subspan(done), width, kMostBricks);
+                                              std::span(rays.ends).subspan(done), width, kMostBricks, &known);
       see(more, range, std::span(mask).subspan(done));
       done += more.done;
     }
   }
   void see(const CrossedCubes& crossed, ShardRange range, std::span<std::uint8_t> mask) {
-    bricks.add(crossed.bricks, range, [&](std::size_t i, std::uint64_t& known, bool) {
-      if ((crossed.cubes[i] & ~known) == 0) return;
-      known |= crossed.cubes[i];
+    std::vector<std::uint64_t> before = remember(crossed.all, range);
+    for (std::size_t i = 0; i < crossed.cubes.size(); i++) {
+      std::uint64_t& cubes = before[crossed.which[i]];
+      if ((crossed.cubes[i] & ~cubes) == 0) continue;
+      cubes |= crossed.cubes[i];
       mask[crossed.rays[i]] = 1;
-    });
+    }
   }
-  [[nodiscard]] std::size_t memory() const { return bricks.memory(); }
+  /// The cubes of each brick that were crossed before; all, where they are not in the range.
+  std::vector<std::uint64_t> remember(std::span<const CrossedCubes::Brick> crossed, ShardRange range) {
+    constexpr std::size_t kAhead = 16;  // as VoxelTable::add
+    std::vector<std::uint64_t> before(crossed.size(), ~std::uint64_t{0});
+    for (std::size_t i = 0; i < crossed.size(); i++) {
+      const VoxelPlace& place = crossed[i].place;
+      KeyTable<std::uint64_t>& table = bricks.block(place.block);
+      if (i + kAhead < crossed.size() && crossed[i + kAhead].place.block == place.block) {
+        table.prefetch(crossed[i + kAhead].place.key);
+      }
+      if (!range.has(place.key)) continue;
+      std::uint64_t& cubes = *table.add(place.key).value;
+      before[i] = cubes;
+      cubes |= crossed[i].cubes;
+      known.learn(crossed[i].name, cubes);
+    }
+    return before;
+  }
+  [[nodiscard]] std::size_t memory() const { return bricks.memory() + known.memory(); }
   void restrict_to(ShardRange range) { bricks.restrict_to(range); }
-  void clear() { bricks.clear(); }
+  void clear() {
+    bricks.clear();
+    known.clear();
+  }
 };
 
 /// The rows of `count`, the first of which is number `first` of the whole, whose number n divides.
@@ -116,7 +144,7 @@ StreamCounts decimate_to_count(const Context& context, RaySource& source, RaySin
 
 StreamCounts decimate_paths(const Context& context, RaySource& source, RaySink& sink, Metres width) {
   check_width(width);
-  FirstThroughCube rule{width};
+  FirstThroughCube rule{width, KnownBricks(table_budget(context) / 4)};
   return keep_by_keys(context, source, sink, rule);
 }
 

@@ -108,6 +108,31 @@ TEST(DecimatePaths, MoreBricksThanAreHeldAtATime) {
   EXPECT_TRUE(same_bits(thinned(cloud, {.threads = 2}, 100000, by_path(1.0)), expected));
 }
 
+/// So many rays through few cubes that most bricks become full, looked at by every number of threads.
+TEST(DecimatePaths, ADenseCloudHoweverItRuns) {
+  RayCloud cloud = random_cloud(11, {.rays = 6000, .half_extent = 3.0});
+  for (std::size_t i = 0; i < cloud.size(); i++)
+    cloud.starts[i] = Eigen::Vector3d(-0.1, 0.1, 0.3) + 0.1 * cloud.starts[i % 50];
+  RayCloud expected = cloud;
+  std::set<std::tuple<VoxelIndex, std::uint64_t, int>> crossed;
+  std::vector<std::uint8_t> mask;
+  for (std::size_t i = 0; i < cloud.size(); i++) {
+    const std::size_t before = crossed.size();
+    crossed.merge(path_of(cloud, i, 0.25));
+    mask.push_back(crossed.size() > before ? 1 : 0);
+  }
+  expected.select(mask);
+  ASSERT_LT(expected.size(), cloud.size() / 2);
+  for (const unsigned threads : {1U, 2U, 3U, 8U}) {
+    for (const std::size_t memory :
+         {std::size_t{0}, std::size_t{1}, std::size_t{60000}, std::size_t{300000}}) {
+      const Context context{.threads = threads, .memory = memory};
+      EXPECT_TRUE(same_bits(thinned(cloud, context, 100, by_path(0.25)), expected))
+          << threads << ' ' << memory;
+    }
+  }
+}
+
 auto by_range(double per_metre) {
   return [per_metre](const Context& context, RaySource& source, RaySink& sink) {
     return decimate_by_range(context, source, sink, per_metre);
