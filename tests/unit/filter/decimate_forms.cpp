@@ -123,13 +123,11 @@ TEST(DecimatePaths, ADenseCloudHoweverItRuns) {
   }
   expected.select(mask);
   ASSERT_LT(expected.size(), cloud.size() / 2);
-  for (const unsigned threads : {1U, 2U, 3U, 8U}) {
-    for (const std::size_t memory :
-         {std::size_t{0}, std::size_t{1}, std::size_t{60000}, std::size_t{300000}}) {
-      const Context context{.threads = threads, .memory = memory};
-      EXPECT_TRUE(same_bits(thinned(cloud, context, 100, by_path(0.25)), expected))
-          << threads << ' ' << memory;
-    }
+  for (const unsigned threads : {1U, 2U, 3U, 8U})
+    EXPECT_TRUE(same_bits(thinned(cloud, {.threads = threads}, 100, by_path(0.25)), expected)) << threads;
+  for (const std::size_t memory : {1U, 60000U, 300000U}) {
+    const Context context{.threads = 2, .memory = memory};
+    EXPECT_TRUE(same_bits(thinned(cloud, context, 500, by_path(0.25)), expected)) << memory;
   }
 }
 

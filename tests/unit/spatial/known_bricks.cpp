@@ -83,26 +83,27 @@ TEST(KnownBricks, StayWithinTheirMemory) {
 
 /// Two bricks in one place, of which one thread learns in turn.
 TEST(KnownBricks, NeverMixTwoBricksForWhoeverAsksMeanwhile) {
-  KnownBricks known(64 * 16);
-  known.centre_on({0, 0, 0});
-  std::vector<BrickNames::Name> rivals;
-  for (std::int64_t y = 0; rivals.size() < 2; y++) {
-    for (std::int64_t x = 0; x < 20 && rivals.size() < 2; x++) {
-      const BrickNames::Name name = known.names().of({x, y, 0});
-      if (BrickNames::place(name, 63) == 7) rivals.push_back(name);
-    }
-  }
+  KnownBricks known(1024 * 16);
+  const VoxelIndex brick{1, 2, 3},
+      rival{1 - static_cast<std::int64_t>(BrickNames::kSteps[1] >> 32) % 1024, 3, 3};
+  const BrickNames names({0, 0, 0});
+  const std::array<BrickNames::Name, 2> rivals{names.of(brick), names.of(rival)};
+  ASSERT_EQ(BrickNames::place(rivals[0], 1023), BrickNames::place(rivals[1], 1023));
   const std::array<std::uint64_t, 2> of{0x5555555555555555, 0xaaaaaaaaaaaaaaaa};
   std::atomic<bool> is_done = false;
-  std::atomic<int> mixed = 0;
+  int mixed = 0;
   std::thread asking([&] {
-    while (!is_done)
-      for (std::size_t i = 0; i < 2; i++)
+    for (int asked = 0; asked < 1000000; asked++) {
+      if (known.has_centre() && known.names().of(brick) != rivals[0]) mixed++;
+      for (std::size_t i = 0; i < 2; i++) {
         if ((known.cubes(rivals[i]) & ~of[i]) != 0) mixed++;
+      }
+    }
+    is_done = true;
   });
-  for (std::size_t i = 0; i < 200000; i++)
+  known.centre_on({0, 0, 0});
+  for (std::size_t i = 0; !is_done; i++)
     known.learn(rivals[i % 2], of[i % 2]);
-  is_done = true;
   asking.join();
   EXPECT_EQ(mixed, 0);
 }
