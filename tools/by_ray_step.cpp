@@ -99,31 +99,45 @@ StepMirror::StepMirror(const CloudInfo& given, const PipeStep& step, OutputPreci
   mirror_.emplace(noted(precision.widened(output_, given), step));
 }
 
-void StepMirror::reflect(RayCloud& rays) const {
+bool StepMirror::reflect(RayCloud& rays) const {
   try {
-    mirror_->reflect(rays);
+    return mirror_->reflect(rays);
   } catch (const PrecisionLoss&) {
     precision_.lost(output_);
     throw;
   }
 }
 
-SteppedSource::SteppedSource(std::unique_ptr<RaySource> source, const PipeStep& step,
-                             OutputPrecision& precision)
-    : source_(std::move(source)), step_(source_->info(), step), mirror_(step_.info(), step, precision) {}
+SteppedSource::Stage::Stage(const CloudInfo& before, const PipeStep& what, OutputPrecision& precision)
+    : step(before, what),
+      mirror(step.info(), what, precision),
+      keeps_places(what.step->keeps_places != nullptr && what.step->keeps_places(what.match)) {}
+
+SteppedSource::SteppedSource(std::unique_ptr<RaySource> source, std::span<const PipeStep> steps,
+                             std::span<OutputPrecision* const> precision)
+    : source_(std::move(source)) {
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    stages_.emplace_back(i == 0 ? source_->info() : info(), steps[i], *precision[i]);
+}
 
 /// What the file behind it would have dropped is dropped here, and not for the next one to tell.
 std::size_t SteppedSource::decode(const RawChunk& raw, RayCloud& rays) const {
-  const std::size_t dropped = source_->decode(raw, rays);
-  step_.add_dropped(dropped);
-  step_.apply(rays);
-  mirror_.reflect(rays);
+  stages_.front().step.add_dropped(source_->decode(raw, rays));
+  bool settled = false;
+  for (const Stage& stage : stages_) {
+    stage.step.apply(rays);
+    if (settled && stage.keeps_places)
+      stage.mirror.reflect_settled(rays);
+    else
+      settled = stage.mirror.reflect(rays);
+  }
   return 0;
 }
 
 void SteppedSource::rewind() {
   source_->rewind();
-  step_.forget();
+  for (Stage& stage : stages_)
+    stage.step.forget();
 }
 
 void SteppedSink::encode(const RayCloud& rays, RawChunk& raw) const {

@@ -7,9 +7,11 @@
 
 #include <raycloud/io/ply_channel.h>
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 
 namespace ray::tools {
 
@@ -29,6 +31,8 @@ class ByRayStep {
  public:
   /// `step` must outlive it. `source` tells of the cloud that the chunks are of.
   ByRayStep(const CloudInfo& source, const PipeStep& step);
+  ByRayStep(const ByRayStep&) = delete;
+  ByRayStep& operator=(const ByRayStep&) = delete;
   /// What the step makes of the cloud, without the history.
   [[nodiscard]] const CloudInfo& info() const { return info_; }
   [[nodiscard]] const PipeStep& step() const { return step_; }
@@ -58,8 +62,9 @@ class StepMirror {
   /// must outlive it.
   StepMirror(const CloudInfo& given, const PipeStep& step, OutputPrecision& precision);
   [[nodiscard]] const CloudInfo& info() const { return mirror_->info(); }
-  /// Thread-safe. Throws PrecisionLoss.
-  void reflect(RayCloud& rays) const;
+  /// As those of PlyMirror. Thread-safe. Throws PrecisionLoss.
+  bool reflect(RayCloud& rays) const;
+  void reflect_settled(RayCloud& rays) const { mirror_->reflect_settled(rays); }
 
  private:
   std::size_t output_;
@@ -67,22 +72,30 @@ class StepMirror {
   std::optional<PlyMirror> mirror_;
 };
 
-/// A source whose rays have gone through a step.
+/// A source whose rays have gone through one step or more.
 class SteppedSource final : public RaySource {
  public:
-  SteppedSource(std::unique_ptr<RaySource> source, const PipeStep& step, OutputPrecision& precision);
+  /// `precision` has one for each of the steps.
+  SteppedSource(std::unique_ptr<RaySource> source, std::span<const PipeStep> steps,
+                std::span<OutputPrecision* const> precision);
 
-  const CloudInfo& info() const override { return mirror_.info(); }
+  const CloudInfo& info() const override { return stages_.back().mirror.info(); }
   bool fetch(RawChunk& raw) override { return source_->fetch(raw); }
   std::size_t decode(const RawChunk& raw, RayCloud& rays) const override;
   void rewind() override;
 
-  [[nodiscard]] const StepReport& report() const { return step_.report(); }
+  /// Of step number `one`.
+  [[nodiscard]] const StepReport& report(std::size_t one) const { return stages_[one].step.report(); }
 
  private:
+  struct Stage {
+    Stage(const CloudInfo& before, const PipeStep& what, OutputPrecision& precision);
+    ByRayStep step;
+    StepMirror mirror;
+    bool keeps_places;
+  };
   std::unique_ptr<RaySource> source_;
-  ByRayStep step_;
-  StepMirror mirror_;
+  std::deque<Stage> stages_;
 };
 
 /// Lets rays go through a step on their way to a sink.

@@ -133,18 +133,23 @@ class Section {
   void run_one(std::size_t i, const path& output) {
     const std::size_t driver = stages_[i].driver;
     std::unique_ptr<RaySource> source = take_source(i);
-    std::vector<const SteppedSource*> stepped;
-    for (std::size_t one = stages_[i].first; one < driver; ++one) {
-      auto next = std::make_unique<SteppedSource>(std::move(source), steps_[one], lessons_.precision[one]);
-      stepped.push_back(next.get());
-      source = std::move(next);
+    const std::size_t first = stages_[i].first;
+    const SteppedSource* stepped = nullptr;
+    if (first < driver) {
+      std::vector<OutputPrecision*> precision;
+      for (std::size_t one = first; one < driver; ++one)
+        precision.push_back(&lessons_.precision[one]);
+      auto all = std::make_unique<SteppedSource>(std::move(source), steps_.subspan(first, driver - first),
+                                                 precision);
+      stepped = all.get();
+      source = std::move(all);
     }
     // One of them speaks for all.
     Context context = context_;
     if (i > 0) context.progress = nullptr;
     reports_[driver - first_] = drive(context, i, *source, output);
-    for (std::size_t one = 0; one < stepped.size(); ++one)
-      reports_[stages_[i].first + one - first_] = stepped[one]->report();
+    for (std::size_t one = 0; one < driver - first; ++one)
+      reports_[first + one - first_] = stepped->report(one);
   }
 
   StepReport drive(const Context& context, std::size_t i, RaySource& source, const path& output) {

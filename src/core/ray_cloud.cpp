@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 namespace ray {
 
@@ -18,6 +19,41 @@ void select_rows(std::vector<T>& column, std::span<const std::uint8_t> mask) {
     kept += mask[row] != 0 ? 1 : 0;
   }
   column.resize(kept);
+}
+
+/// Goes through chosen rows of a column.
+template <class T>
+struct ChosenRow {
+  using iterator_category = std::random_access_iterator_tag;
+  using value_type = T;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const T*;
+  using reference = const T&;
+
+  const T* column;
+  const std::uint32_t* row;
+
+  reference operator*() const { return column[*row]; }
+  ChosenRow& operator++() {
+    ++row;
+    return *this;
+  }
+  ChosenRow& operator--() {
+    --row;
+    return *this;
+  }
+  ChosenRow& operator+=(difference_type steps) {
+    row += steps;
+    return *this;
+  }
+  difference_type operator-(const ChosenRow& other) const { return row - other.row; }
+  bool operator==(const ChosenRow& other) const { return row == other.row; }
+};
+
+/// Unlike resizing first, writes no row twice.
+template <class T>
+void gather_rows(std::vector<T>& to, const std::vector<T>& from, std::span<const std::uint32_t> rows) {
+  to.assign(ChosenRow<T>{from.data(), rows.data()}, ChosenRow<T>{from.data(), rows.data() + rows.size()});
 }
 
 }  // namespace
@@ -53,17 +89,12 @@ void RayCloud::select(std::span<const std::uint8_t> mask) {
 }
 
 void RayCloud::assign_rows(const RayCloud& from, std::span<const std::uint32_t> rows) {
-  resize(rows.size());
+  gather_rows(starts, from.starts, rows);
+  gather_rows(ends, from.ends, rows);
+  gather_rows(times, from.times, rows);
+  gather_rows(colours, from.colours, rows);
+  gather_rows(bounded, from.bounded, rows);
   set_schema(schema_of(from));
-  // One loop for all columns: the rows stay in the nearest cache.
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::uint32_t row = rows[i];
-    starts[i] = from.starts[row];
-    ends[i] = from.ends[row];
-    times[i] = from.times[row];
-    colours[i] = from.colours[row];
-    bounded[i] = from.bounded[row];
-  }
   for (std::size_t c = 0; c < extras.size(); ++c) {
     visit_scalar(extras[c].type(), [&]<class T>() {
       const std::span<const T> values = from.extras[c].values<T>();

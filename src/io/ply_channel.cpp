@@ -141,8 +141,18 @@ PlyMirror::PlyMirror(const CloudInfo& info) : encoder_(std::make_unique<PlyEncod
 PlyMirror::~PlyMirror() = default;
 PlyMirror::PlyMirror(PlyMirror&&) noexcept = default;
 
-void PlyMirror::reflect(RayCloud& rays) const {
-  encoder_->reflect(rays);
+bool PlyMirror::reflect(RayCloud& rays) const {
+  const bool settled = encoder_->reflect(rays);
+  rename_columns(rays);
+  return settled;
+}
+
+void PlyMirror::reflect_settled(RayCloud& rays) const {
+  encoder_->reflect_settled(rays);
+  rename_columns(rays);
+}
+
+void PlyMirror::rename_columns(RayCloud& rays) const {
   for (std::size_t i = 0; i < rays.extras.size(); ++i) {
     if (rays.extras[i].info() == info_.extras[i]) continue;
     Column renamed(info_.extras[i], rays.size());

@@ -289,13 +289,21 @@ void PlyEncoder::fail_not_finite() const {
   throw Error(ErrorCode::out_of_range, name_ + ": a coordinate or time that is not finite cannot be stored");
 }
 
-void PlyEncoder::reflect(RayCloud& rays) const {
-  single_ ? reflect_as<float>(rays) : reflect_as<double>(rays);
+bool PlyEncoder::reflect(RayCloud& rays) const {
+  const bool settled = single_ ? reflect_as<float>(rays) : reflect_as<double>(rays);
+  reflect_settled(rays);
+  return settled;
+}
+
+void PlyEncoder::reflect_settled(RayCloud& rays) const {
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    rays.colours[i].intensity = alpha_of(rays, i);
 }
 
 /// Block by block, in loops that compilers vectorise.
 template <class Real>
-void PlyEncoder::reflect_as(RayCloud& rays) const {
+bool PlyEncoder::reflect_as(RayCloud& rays) const {
+  std::size_t changing = 0;
   double* to = rays.ends.data()->data();
   double* from = rays.starts.data()->data();
   for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
@@ -314,10 +322,10 @@ void PlyEncoder::reflect_as(RayCloud& rays) const {
       const auto stored_ray = static_cast<Real>(from[j] - to[j]);
       to[j] = static_cast<double>(stored_end);
       from[j] = static_cast<double>(stored_end) + static_cast<double>(stored_ray);
+      changing += from[j] - to[j] != static_cast<double>(stored_ray) ? 1 : 0;
     }
-    for (std::size_t i = begin; i < end; ++i)
-      rays.colours[i].intensity = alpha_of(rays, i);
   }
+  return changing == 0;
 }
 
 }  // namespace ray

@@ -28,15 +28,18 @@ class PlyEncoder {
   void encode(const RayCloud& rays, RawChunk& raw) const;
   /// As RaySink::encode_rows.
   void encode_rows(const RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const;
-  /// What encoding and decoding would make of rays, without the bytes. Throws as `encode` does.
-  void reflect(RayCloud& rays) const;
+  /// What encoding and decoding would make of rays, without the bytes. Throws as `encode` does. Returns
+  /// whether starts and ends would stay as they are if it were done again.
+  bool reflect(RayCloud& rays) const;
+  /// The same where starts, ends and times are known to stay as they are.
+  void reflect_settled(RayCloud& rays) const;
 
  private:
   class Layout;
   template <class RowAt>
   void encode_all(const RayCloud& rays, std::size_t count, const RowAt& row_at, RawChunk& raw) const;
   template <class Real>
-  void reflect_as(RayCloud& rays) const;
+  [[nodiscard]] bool reflect_as(RayCloud& rays) const;
   void check_ray(const RayCloud& rays, std::size_t row) const;
   void check_value(double value) const;
   [[noreturn]] void fail_not_finite() const;

@@ -73,9 +73,10 @@ StepReport run(const Match& match, const Context& context, RaySource& source, co
 
 }  // namespace
 
-const Step kColourStep{
-    .command = kCommand, .outputs = {{"", "_coloured"}}, .run = run, .by_ray = [](const Match& match) {
-      return match.usage() != "image";
-    }};
+const Step kColourStep{.command = kCommand,
+                       .outputs = {{"", "_coloured"}},
+                       .run = run,
+                       .by_ray = [](const Match& match) { return match.usage() != "image"; },
+                       .keeps_places = [](const Match&) { return true; }};
 
 }  // namespace ray::tools

@@ -74,6 +74,12 @@ bool by_ray(const Match& match) {
   return !splits_in_parts(match) && !kNot.contains(match.usage());
 }
 
+/// The other forms cut those that cross a border.
+bool sorts_whole_rays(const Match& match) {
+  static const std::set<std::string, std::less<>> kCutting{"plane", "box", "capsule"};
+  return !kCutting.contains(match.usage());
+}
+
 }  // namespace
 
 bool splits_in_parts(const Match& match) {
@@ -83,6 +89,7 @@ bool splits_in_parts(const Match& match) {
 const Step kSplitStep{.command = kCommand,
                       .outputs = {{"inside", "_inside"}, {"outside", "_outside"}},
                       .run = run,
-                      .by_ray = by_ray};
+                      .by_ray = by_ray,
+                      .keeps_places = sorts_whole_rays};
 
 }  // namespace ray::tools

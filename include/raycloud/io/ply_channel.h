@@ -35,10 +35,15 @@ class PlyMirror {
   /// What open_ply would tell of the file, but for the number of rays.
   [[nodiscard]] const CloudInfo& info() const { return info_; }
   /// Turns `rays` into what would be read back, to the bit. Thread-safe. Throws as the sink of create_ply
-  /// does.
-  void reflect(RayCloud& rays) const;
+  /// does. Returns whether starts and ends would stay as they are if a file of the same or of double
+  /// precision were written of them again.
+  bool reflect(RayCloud& rays) const;
+  /// The same where that is known of starts, ends and times: what such a file does to the rest. Quick.
+  void reflect_settled(RayCloud& rays) const;
 
  private:
+  void rename_columns(RayCloud& rays) const;
+
   std::unique_ptr<const PlyEncoder> encoder_;
   CloudInfo info_;
 };
