@@ -38,6 +38,10 @@ class ChunkSink final : public RaySink {
     chunk_.assign_rows(rays, rows);
     raw.rows = rows.size();
   }
+  void consume_rows(RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override {
+    rays.keep_rows(rows);
+    consume(rays, raw);
+  }
   void consume(RayCloud& rays, RawChunk& raw) const override {
     raw.rows = rays.size();
     std::swap(chunk_, rays);
@@ -143,6 +147,11 @@ void SteppedSource::rewind() {
 void SteppedSink::encode(const RayCloud& rays, RawChunk& raw) const {
   RayCloud copy = rays;
   consume(copy, raw);
+}
+
+void SteppedSink::consume_rows(RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const {
+  rays.keep_rows(rows);
+  consume(rays, raw);
 }
 
 void SteppedSink::consume(RayCloud& rays, RawChunk& raw) const {

@@ -108,6 +108,7 @@ class SteppedSink final : public RaySink {
 
   void encode(const RayCloud& rays, RawChunk& raw) const override;
   void consume(RayCloud& rays, RawChunk& raw) const override;
+  void consume_rows(RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const override;
   void write(const RawChunk& raw) override { sink_->write(raw); }
   void finish() override { sink_->finish(); }
   void amend(std::string_view comment, std::string_view by) override { sink_->amend(comment, by); }

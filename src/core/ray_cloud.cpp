@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <utility>
 
 namespace ray {
 
@@ -103,6 +105,28 @@ void RayCloud::assign_rows(const RayCloud& from, std::span<const std::uint32_t> 
         to[i] = values[rows[i]];
     });
   }
+}
+
+void RayCloud::keep_rows(std::span<const std::uint32_t> rows) {
+  if (std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()) != rows.end()) {
+    RayCloud kept;
+    kept.assign_rows(*this, rows);
+    *this = std::move(kept);
+    return;
+  }
+  // No row comes from before its new place, so none is overwritten that is still needed.
+  const auto keep = [rows](auto* column) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      column[i] = column[rows[i]];
+  };
+  keep(starts.data());
+  keep(ends.data());
+  keep(times.data());
+  keep(colours.data());
+  keep(bounded.data());
+  for (Column& column : extras)
+    visit_scalar(column.type(), [&]<class T>() { keep(column.values<T>().data()); });
+  resize(rows.size());
 }
 
 void RayCloud::append(const RayCloud& other) {

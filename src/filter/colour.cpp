@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace ray {
 namespace {
@@ -30,11 +31,18 @@ class HueTable {
     }
   }
   [[nodiscard]] const Colour& operator()(double turns) const {
-    const double fraction = turns - std::floor(turns);
+    const double fraction = turns - floored(turns);
     return hues_[std::min(static_cast<std::size_t>(fraction * static_cast<double>(kHues)), kHues - 1)];
   }
 
  private:
+  /// std::floor is a function call on the baseline instruction set.
+  static double floored(double value) {
+    if (!(std::abs(value) < 0x1p62)) return std::floor(value);
+    const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
+    return whole - (value < whole ? 1.0 : 0.0);
+  }
+
   std::array<Colour, kHues> hues_;
 };
 

@@ -41,6 +41,9 @@ struct RayCloud {
   /// Replaces all by the given rows of `from`, another cloud, in the given order, with all its columns.
   void assign_rows(const RayCloud& from, std::span<const std::uint32_t> rows);
 
+  /// Keeps the given rows, in the given order; in place if that is the order they have.
+  void keep_rows(std::span<const std::uint32_t> rows);
+
   /// Adds the rows of `other`. Columns are matched by name: the result has the columns of both, with zeros
   /// where one of them has none. Throws Error(wrong_content) if a column of the same name has another type.
   void append(const RayCloud& other);

@@ -68,6 +68,11 @@ class RaySink {
   /// disk.
   virtual void write(const RawChunk& raw) = 0;
 
+  /// As `encode_rows`, where nobody needs `rays` any more.
+  virtual void consume_rows(RayCloud& rays, std::span<const std::uint32_t> rows, RawChunk& raw) const {
+    encode_rows(rays, rows, raw);
+  }
+
   /// Replaces a comment that it was made with by another of the same length, for what is known only at the
   /// end. Precondition: the target is a PLY file. Throws Error(usage) if there is no such comment.
   virtual void amend(std::string_view comment, std::string_view by);

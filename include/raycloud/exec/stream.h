@@ -72,7 +72,7 @@ StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, co
     stages.push_back({Mode::parallel, [&](std::size_t slot) {
                         Item& item = items[slot];
                         if constexpr (kMasks)
-                          sink->encode_rows(item.rays, rows_of(item.mask), item.raw);
+                          sink->consume_rows(item.rays, rows_of(item.mask), item.raw);
                         else
                           sink->consume(item.rays, item.raw);
                       }});

@@ -57,11 +57,16 @@ StreamCounts stream_parts(const Context& context, RaySource& source, const Map& 
                       if (context.progress != nullptr) context.progress->advance(item.raw.rows);
                     }});
   stages.push_back({Mode::parallel, [&](std::size_t slot) {
-                      for (StreamPart& part : items[slot].parts) {
-                        if (part.of_chunk)
+                      // The first part comes last and may take the chunk.
+                      std::vector<StreamPart>& parts = items[slot].parts;
+                      for (std::size_t i = parts.size(); i-- > 0;) {
+                        StreamPart& part = parts[i];
+                        if (!part.of_chunk)
+                          part.sink->consume(part.rays, part.raw);
+                        else if (i > 0)
                           part.sink->encode_rows(items[slot].rays, part.rows, part.raw);
                         else
-                          part.sink->consume(part.rays, part.raw);
+                          part.sink->consume_rows(items[slot].rays, part.rows, part.raw);
                       }
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace ray {
@@ -50,6 +51,30 @@ RC_GTEST_PROP(RayCloud, SelectKeepsTheMaskedRowsOfEveryColumnInOrder, ()) {
     expected.append(row);
   }
   RC_ASSERT(same_bits(kept, expected));
+}
+
+RC_GTEST_PROP(RayCloud, KeepsRowsInTheirOrderAndInAnyOther, ()) {
+  const RayCloud cloud = any_cloud();
+  auto rows = *rc::gen::container<std::vector<std::uint32_t>>(
+      rc::gen::inRange<std::uint32_t>(0, static_cast<std::uint32_t>(cloud.size()) + 1));
+  std::erase(rows, static_cast<std::uint32_t>(cloud.size()));
+  if (*rc::gen::arbitrary<bool>()) std::sort(rows.begin(), rows.end());
+  if (*rc::gen::arbitrary<bool>()) rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  // The oracle goes ray by ray through single-row clouds.
+  RayCloud expected;
+  expected.set_schema(schema_of(cloud));
+  for (const std::uint32_t i : rows) {
+    MemorySource one(cloud, 1);
+    RayCloud row;
+    one.decode(RawChunk{{}, i, 1}, row);
+    expected.append(row);
+  }
+  RayCloud kept = cloud;
+  kept.keep_rows(rows);
+  RC_ASSERT(same_bits(kept, expected));
+  RayCloud assigned = any_cloud();
+  assigned.assign_rows(cloud, rows);
+  RC_ASSERT(same_bits(assigned, expected));
 }
 
 RC_GTEST_PROP(RayCloud, AppendingTheTwoSidesOfASplitGivesTheCloud, ()) {
