@@ -24,9 +24,10 @@ struct PipeReport {
   std::vector<StepReport> steps;
 };
 
-/// Runs all steps at once, each on a thread of its own, chunks passing from one to the next; the result has
-/// the bytes that the commands would have given one after the other. Where a step must read its input twice,
-/// the steps before it write a file beside the output first, which is gone at the end.
+/// Runs all steps at once: those that must see the rays in order each on a thread of its own, the others as
+/// part of reading or writing. The result has the bytes that the commands would have given one after the
+/// other. Where a step must read its input twice, the steps before it write a file beside the output first,
+/// which is gone at the end.
 [[nodiscard]] PipeReport run_pipe(const Context& context, const std::filesystem::path& input,
                                   std::span<const PipeStep> steps, const std::filesystem::path& output);
 

@@ -34,11 +34,6 @@ void append_range(std::vector<T>& to, const std::vector<T>& from, std::size_t be
 
 }  // namespace
 
-void RayPieces::clear() {
-  rows_.clear();
-  cuts_.clear();
-}
-
 void RayPieces::add(std::size_t row, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                     std::uint8_t flags) {
   if (flags != 0) cuts_.push_back({rows_.size(), start, end, flags});

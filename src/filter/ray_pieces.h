@@ -24,7 +24,6 @@ struct Stretch {
 /// Which rows of a chunk, and which pieces of them, belong to a part, in the order of the file.
 class RayPieces {
  public:
-  void clear();
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   void add(std::size_t row) { rows_.push_back(static_cast<std::uint32_t>(row)); }
   void add(std::size_t row, const Eigen::Vector3d& start, const Eigen::Vector3d& end, std::uint8_t flags);

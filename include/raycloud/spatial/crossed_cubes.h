@@ -37,10 +37,10 @@ struct CrossedCubes {
 /// ray is always told, later ones need not be; and nothing need be told of cubes that are in `known`, which
 /// may learn meanwhile.
 ///
-/// Stops after the ray that makes the bricks `most_bricks` or more. Shape: thread-safe; about 8 ns a cube, 2
-/// where all around is known or told. Memory: 24 bytes a brick and 48 for each in `all`, and 0.7 MB. Throws
-/// Error(out_of_range) where a ray crosses more than 2^30 cubes along an axis or lies more than 2^62 cubes
-/// from the origin. Preconditions: width > 0, as many starts as ends.
+/// Stops after the ray that makes the bricks `most_bricks` or more. Shape: thread-safe; O(cubes), and
+/// O(bricks) where all around is known or told. Memory: 24 bytes a brick and 48 for each in `all`, and 0.7
+/// MB. Throws Error(out_of_range) where a ray crosses more than 2^30 cubes along an axis or lies more than
+/// 2^62 cubes from the origin. Preconditions: width > 0, as many starts as ends.
 ///
 /// A slab of cubes across the ray's main direction is crossed in one step, with the position on the other two
 /// axes in fixed point, so that steps do not wait for each other (against Amanatides and Woo 1987, who go
