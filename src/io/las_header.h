@@ -42,6 +42,7 @@ struct LasHeader {
   std::vector<std::byte> compatibility_record;  ///< points of LAS 1.4 stored in an older format
   std::vector<std::byte> extra_bytes_record;
   bool chunk_table_lost = false;  ///< LASzip's, at the end of the file; its readers then do without
+  std::vector<std::uint64_t> layered_chunks;  ///< where they begin (laz_layers.h), once they are checked
   /// COPC: where its root page is and how many bytes it has; else 0.
   std::uint64_t copc_pages_at = 0;
   std::uint64_t copc_pages_size = 0;

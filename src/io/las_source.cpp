@@ -1,4 +1,5 @@
 #include "las_decoder.h"
+#include "laz_layers.h"
 #include "laz_pieces.h"
 #include "laz_reader.h"
 
@@ -237,6 +238,8 @@ std::unique_ptr<LazReader> open_reader(const InputFile& input, LasHeader& header
     throw Error(ErrorCode::file_format,
                 input.path().string() + ": cut short or damaged: LASzip's table of chunks is lost");
   header.chunk_table_lost = lost;
+  check_laszip_record(input, header);
+  header.layered_chunks = layered_chunks(input, header);
   auto reader = std::make_unique<LazReader>(input, header);
   std::vector<std::byte> record(reader->record_length());
   try {

@@ -4,8 +4,10 @@
 
 #include <raycloud/core/error.h>
 
+#include <algorithm>
 #include <istream>
 #include <string_view>
+#include <utility>
 
 namespace ray {
 namespace {
@@ -58,7 +60,10 @@ std::vector<std::byte> header_for_laszip(const LasHeader& header) {
 class LazReader::Stream : private std::streambuf {
  public:
   Stream(const InputFile& input, const LasHeader& header)
-      : input_(input), head_(header_for_laszip(header)), points_at_(header.points_at) {
+      : input_(input),
+        head_(header_for_laszip(header)),
+        points_at_(header.points_at),
+        layered_chunks_(header.layered_chunks) {
     if (header.chunk_table_lost) {
       // A table at its own address is LASzip's sign for one that was never written.
       head_.resize(points_at_ + 8);
@@ -80,14 +85,29 @@ class LazReader::Stream : private std::streambuf {
     return ended_ ? traits_type::eof() : traits_type::to_int_type(buffer_[0]);
   }
 
+  [[nodiscard]] std::uint64_t position() const { return at_ + static_cast<std::uint64_t>(gptr() - eback()); }
+
   pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode mode) override {
-    if (from == std::ios_base::cur) offset += static_cast<off_type>(at_) + (gptr() - eback());
-    if (from == std::ios_base::end) offset += static_cast<off_type>(input_.size());
-    return seekpos(offset, mode);
+    if (from == std::ios_base::beg) return seekpos(offset, mode);
+    if (from == std::ios_base::end) return move_to(static_cast<off_type>(input_.size()) + offset);
+    if (offset == 0) told_ = position();
+    return move_to(static_cast<off_type>(position()) + offset);
   }
 
-  pos_type seekpos(pos_type position, std::ios_base::openmode) override {
-    const off_type to = position;
+  /// To a chunk, to the table of chunks, or, as LASzip skips layers, on from the place it has just asked for;
+  /// but to no place that only the table takes for a chunk.
+  pos_type seekpos(pos_type place, std::ios_base::openmode) override {
+    const auto to = static_cast<std::uint64_t>(off_type(place));
+    const bool skips = told_ == position() && to >= told_;
+    if (!layered_chunks_.empty() && !skips && to > points_at_ + 8 &&
+        !std::binary_search(layered_chunks_.begin(), layered_chunks_.end(), to) &&
+        std::exchange(table_seen_, true))
+      return pos_type(off_type(-1));
+    return move_to(place);
+  }
+
+  pos_type move_to(off_type to) {
+    const pos_type position = to;
     if (to < 0) return pos_type(off_type(-1));
     const off_type inside = to - static_cast<off_type>(at_);
     if (inside >= 0 && inside <= egptr() - eback()) {
@@ -115,7 +135,10 @@ class LazReader::Stream : private std::streambuf {
   const InputFile& input_;
   std::vector<std::byte> head_;
   std::uint64_t points_at_;
-  std::uint64_t at_ = 0;  ///< position of the buffer
+  const std::vector<std::uint64_t> layered_chunks_;
+  bool table_seen_ = false;
+  std::uint64_t told_ = 0;  ///< the last position that was asked for
+  std::uint64_t at_ = 0;    ///< position of the buffer
   bool ended_ = false;
   std::vector<char> buffer_ = std::vector<char>(1 << 16);
   std::istream stream_{this};
@@ -126,6 +149,30 @@ std::uint32_t laz_chunk_rows(const LasHeader& header) {
   if (header.laszip_record.size() < kItemsAt || load<std::uint16_t>(record + kCompressorAt) < 2) return 0;
   const auto rows = load<std::uint32_t>(record + kChunkRowsAt);
   return rows == 0 ? kVariableChunk : rows;
+}
+
+std::vector<std::size_t> laszip_layers(const LasHeader& header) {
+  const std::vector<std::byte>& record = header.laszip_record;
+  std::vector<std::size_t> layers;
+  if (load<std::uint16_t>(record.data() + kCompressorAt) != 3) return layers;
+  const std::size_t items = load<std::uint16_t>(record.data() + kItemCountAt);
+  for (std::size_t i = 0; i < items; ++i) {
+    const std::byte* item = record.data() + kItemsAt + 6 * i;
+    switch (load<std::uint16_t>(item)) {
+      case 10:
+        layers.push_back(9);
+        break;  // the standard fields
+      case 12:
+        layers.push_back(2);
+        break;  // colour and near infrared
+      case 14:
+        layers.push_back(load<std::uint16_t>(item + 2));
+        break;  // extra bytes, one by one
+      default:
+        layers.push_back(1);  // colour, wave packet
+    }
+  }
+  return layers;
 }
 
 void check_laszip_record(const InputFile& input, const LasHeader& header) {

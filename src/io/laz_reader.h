@@ -67,6 +67,10 @@ class LazReader {
 [[nodiscard]] std::uint32_t laz_chunk_rows(const LasHeader& header);
 inline constexpr std::uint32_t kVariableChunk = 0xffffffff;
 
+/// How many layers LASzip stores for each item of a point, by its own record; empty where it stores whole
+/// points.
+[[nodiscard]] std::vector<std::size_t> laszip_layers(const LasHeader& header);
+
 /// Throws Error(file_format) unless LASzip's record describes points of the header's format and length.
 void check_laszip_record(const InputFile& input, const LasHeader& header);
 
