@@ -1,0 +1,49 @@
+#pragma once
+/// The surface around a point, from its neighbours that were seen from the same side (paper, section VI-D).
+
+#include <raycloud/spatial/point_tree.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+namespace ray {
+
+/// The distribution of a point and its neighbours.
+struct Surfel {
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< the direction of least extent, turned to the sensor
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();    ///< the direction of greatest extent
+  Eigen::Vector3d variances =
+      Eigen::Vector3d::Zero();  ///< m², along normal, across both, along axis: ascending
+  std::uint32_t count = 0;      ///< of points, the one in the middle included
+  double reach2 = 0.0;          ///< m², squared distance of the furthest of them
+
+  /// False where so few neighbours are within reach, or all so in line, that there is no surface: then
+  /// `normal` points to the sensor.
+  [[nodiscard]] bool is_surface() const { return count > 3 && variances[1] > 0.0; }
+};
+
+/// What a surfel looks like: three parts that make one, from its extents (square roots of the variances) a >=
+/// b >= c.
+struct Shape {
+  double sphericity = 0.0;      ///< c / a
+  double cylindricality = 0.0;  ///< (a - b) / a
+  double planarity = 0.0;       ///< (b - c) / a
+};
+[[nodiscard]] Shape shape_of(const Surfel& surfel);
+
+struct SurfelRule {
+  std::size_t neighbours = 16;                             ///< as many, besides the point itself
+  double reach = std::numeric_limits<double>::infinity();  ///< m, no neighbour is further
+  bool by_side =
+      true;  ///< leave out neighbours seen from the other side, and take further ones in their place
+};
+
+/// The surfel of the point at `place`. The nearest neighbours give a first normal; where some of them were
+/// seen from its other side, the nearest that were not are taken instead, twice over as the normal changes.
+/// The result depends on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one
+/// to three searches.
+[[nodiscard]] Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
+
+}  // namespace ray
