@@ -1,11 +1,13 @@
 #include <raycloud/core/error.h>
 #include <raycloud/exec/parallel.h>
+#include <raycloud/exec/space_cuts.h>
 #include <raycloud/spatial/point_tree.h>
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -93,56 +95,28 @@ class PointTree::Builder {
     std::uint32_t parts = 0;  // number of the first, 0 for a leaf
     std::uint32_t least_index = 0xffffffff;
   };
-  struct Cut {
-    std::size_t axis = 0;
-    double at = 0.0;  ///< points from here on go right
-  };
-
   void plan_buckets() {
-    buckets_ = std::bit_ceil((points_.size() + kBucketPoints - 1) / kBucketPoints);
-    if (buckets_ <= 1) {
-      buckets_ = 1;
-      return;
+    const std::size_t wanted = (points_.size() + kBucketPoints - 1) / kBucketPoints;
+    std::vector<Eigen::Vector3d> sample;
+    if (wanted > 1) {
+      sample.resize(wanted * kSampled);
+      for (std::size_t i = 0; i < sample.size(); ++i)
+        sample[i] = points_[points_.size() * i / sample.size()].end;
     }
-    const std::size_t wanted = buckets_ * kSampled;
-    std::vector<IndexedPoint> sample(wanted);
-    for (std::size_t i = 0; i < wanted; ++i) {
-      const std::size_t from = points_.size() * i / wanted;
-      sample[i] = {coordinates_of(points_[from]), static_cast<std::uint32_t>(from)};
-    }
-    cuts_.resize(buckets_);
-    plan_cut(1, sample);
-  }
-
-  void plan_cut(std::size_t node, std::span<IndexedPoint> sample) {
-    if (node >= cuts_.size()) return;
-    Box box;
-    for (const IndexedPoint& point : sample)
-      extend(box, point.at, point.at);
-    const std::size_t axis = widest_axis(box);
-    const std::size_t middle = cut(sample, axis);
-    cuts_[node] = {axis, sample[middle].at[axis]};
-    plan_cut(2 * node, sample.first(middle));
-    plan_cut(2 * node + 1, sample.subspan(middle));
-  }
-
-  [[nodiscard]] std::size_t bucket_of(const Eigen::Vector3d& point) const {
-    std::size_t node = 1;
-    while (node < cuts_.size())
-      node = 2 * node + (point[static_cast<Eigen::Index>(cuts_[node].axis)] < cuts_[node].at ? 0 : 1);
-    return node - cuts_.size();
+    cuts_.emplace(std::move(sample), wanted);
+    buckets_ = cuts_->parts();
   }
 
   /// A counting sort, stable, chunk by chunk.
   void fill_buckets() {
     const std::size_t chunks = (points_.size() + kChunk - 1) / kChunk;
     std::vector<std::uint32_t> next(chunks * buckets_);
-    std::vector<std::uint16_t> bucket(buckets_ > 1 ? points_.size() : 0);
+    std::vector<std::uint32_t> bucket(buckets_ > 1 ? points_.size() : 0);
     if (buckets_ > 1) {
       parallel_for(context_, points_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         std::uint32_t* counts = next.data() + begin / kChunk * buckets_;
         for (std::size_t i = begin; i < end; ++i) {
-          bucket[i] = static_cast<std::uint16_t>(bucket_of(points_[i].end));
+          bucket[i] = static_cast<std::uint32_t>(cuts_->part_of(points_[i].end));
           ++counts[bucket[i]];
         }
       });
@@ -257,7 +231,7 @@ class PointTree::Builder {
   std::span<const SeenPoint> points_;
   PointTree& tree_;
   std::size_t buckets_ = 1;
-  std::vector<Cut> cuts_;              // of the tree of buckets, the parts of node i being 2i and 2i + 1
+  std::optional<SpaceCuts> cuts_;
   std::vector<std::uint32_t> begins_;  // of the buckets, in order_
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;               // of the tree of buckets, the last ones being the buckets

@@ -123,7 +123,7 @@ class NeighbourSearch {
   std::uint32_t bound_index_ = 0;
   std::array<double, 3> at_{};
   static constexpr std::size_t kRoom = 2 * kMost + 2 * PointTree::kLeafPoints;
-  std::array<double, kRoom> distance2_{};
+  std::array<double, kRoom + 1> distance2_{};
   std::array<std::uint32_t, kRoom> place_{};
   std::array<Neighbour, kMost> found_{};
 };

@@ -1,0 +1,230 @@
+#pragma once
+/// The neighbourhood shape of algorithm: what becomes of a ray depends on what is near its end. One function
+/// works on a block of space and returns a result for each of its records; a cloud that fits the memory is
+/// one block, a larger one is cut into several, which lie in temporary files until it is their turn.
+
+#include <raycloud/exec/space_cuts.h>
+#include <raycloud/exec/spill.h>
+#include <raycloud/exec/stream.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <type_traits>
+
+namespace ray {
+
+/// The records of the bounded rays whose ends are in a piece of space, and of those around it. In the order
+/// of the cloud, so that an order by position in the block is the order of the rays.
+template <class Record>
+struct Block {
+  std::vector<Record> records;
+  std::vector<std::uint8_t> own;  ///< 0: around it, no result is wanted. Empty: all are its own
+
+  [[nodiscard]] bool is_own(std::size_t i) const { return own.empty() || own[i] != 0; }
+};
+
+/// An even sample of the ends of the bounded rays: the same for a cloud however it is read and worked on.
+struct EndSample {
+  std::vector<Eigen::Vector3d> ends;  ///< every so many, in order; all of a small cloud
+  std::uint64_t bounded = 0;          ///< rays of the cloud
+};
+
+struct BlockNeeds {
+  std::size_t bytes_per_record = 0;  ///< memory for each at most, the record included
+  /// m: no result depends on a record further away.
+  std::function<double(const EndSample&)> reach;
+};
+
+namespace blocks {
+
+/// Takes every so many of the ends it is shown.
+class EndSampler {
+ public:
+  void add(const Eigen::Vector3d& end) {
+    if (sample_.bounded++ % stride_ != 0) return;
+    if (sample_.ends.size() == kMost) thin();
+    if ((sample_.bounded - 1) % stride_ == 0) sample_.ends.push_back(end);
+  }
+  [[nodiscard]] const EndSample& sample() const { return sample_; }
+
+ private:
+  static constexpr std::size_t kMost = 1 << 16;
+  void thin() {
+    for (std::size_t i = 0; i < kMost / 2; ++i)
+      sample_.ends[i] = sample_.ends[2 * i];
+    sample_.ends.resize(kMost / 2);
+    stride_ *= 2;
+  }
+  EndSample sample_;
+  std::uint64_t stride_ = 1;
+};
+
+/// Rays of a chunk on their way to their blocks.
+template <class Record>
+struct Extracted {
+  std::vector<Record> records;
+  std::vector<Eigen::Vector3d> ends;
+};
+
+template <class Record, class Extract>
+Extracted<Record> extract_all(const RayCloud& rays, const Extract& extract) {
+  Extracted<Record> result;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays.bounded[i] == 0) continue;
+    result.records.push_back(extract(rays, i));
+    result.ends.push_back(rays.ends[i]);
+  }
+  return result;
+}
+
+/// The blocks and their results, on disk.
+template <class Record, class Result>
+class SpilledBlocks {
+ public:
+  SpilledBlocks(const EndSample& sample, std::size_t parts, double reach, std::size_t memory)
+      : cuts_(sample.ends, parts),
+        reach_(reach),
+        records_(cuts_.parts(), page_bytes(memory)),
+        results_(cuts_.parts(), page_bytes(memory)) {}
+
+  void add(const Extracted<Record>& extracted) {
+    std::array<std::byte, sizeof(Record) + 1> bytes;
+    for (std::size_t i = 0; i < extracted.records.size(); ++i) {
+      std::memcpy(bytes.data(), &extracted.records[i], sizeof(Record));
+      const std::size_t own = cuts_.part_of(extracted.ends[i]);
+      cuts_.parts_near(extracted.ends[i], reach_, near_);
+      for (const std::uint32_t part : near_) {
+        bytes.back() = std::byte{part == own};
+        records_.append(part, bytes.data(), bytes.size());
+      }
+    }
+  }
+
+  template <class Compute>
+  void compute(const Context& context, const Compute& compute) {
+    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
+      check_cancelled(context);
+      Block<Record> block = load(part);
+      const std::vector<std::uint8_t> own = block.own;
+      const std::vector<Result> results = compute(context, std::move(block), reach_);
+      for (std::size_t i = 0; i < own.size(); ++i)
+        if (own[i] != 0) results_.append(part, &results[i], sizeof(Result));
+    }
+  }
+
+  [[nodiscard]] std::size_t part_of(const Eigen::Vector3d& end) const { return cuts_.part_of(end); }
+  /// The next result of a part.
+  Result next(std::size_t part) {
+    Result result;
+    results_.read(part, &result, sizeof(Result));
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::size_t page_bytes(std::size_t memory) const {
+    return std::clamp<std::size_t>(memory / 16 / cuts_.parts(), std::size_t{1} << 12, std::size_t{1} << 18);
+  }
+
+  Block<Record> load(std::size_t part) {
+    const std::size_t count = records_.size(part) / (sizeof(Record) + 1);
+    Block<Record> block;
+    block.records.resize(count);
+    block.own.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      records_.read(part, &block.records[i], sizeof(Record));
+      records_.read(part, &block.own[i], 1);
+    }
+    records_.drop(part);
+    return block;
+  }
+
+  SpaceCuts cuts_;
+  double reach_;
+  Spill records_;
+  Spill results_;
+  std::vector<std::uint32_t> near_;
+};
+
+}  // namespace blocks
+
+/// Reads `source` twice, three times where blocks go to disk.
+///
+/// `extract(rays, i)` makes a Record, a plain struct, of a bounded ray. `compute(context, Block<Record>&&
+/// block, reach)` returns a Result, a plain struct too, for each record of the block; it may use all threads.
+/// `apply(rays, results)`, in order, changes a chunk by the results of its bounded rays, or returns a mask of
+/// the rays that stay.
+///
+/// The outcome does not depend on context.memory if what `compute` returns for a record depends only on the
+/// records within reach of it and their order. Memory: context.memory, but at least about 20 MB, and the
+/// chunks.
+template <class Record, class Result, class Extract, class Compute, class Apply>
+StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink, const BlockNeeds& needs,
+                        const Extract& extract, const Compute& compute, const Apply& apply) {
+  // Eigen's vectors are not trivially copyable by the letter; their bytes are all there is to them.
+  static_assert(std::is_trivially_destructible_v<Record> && std::is_trivially_destructible_v<Result>);
+  using Extracted = blocks::Extracted<Record>;
+  constexpr std::size_t kMostBlocks = 1024;
+  const auto extract_chunk = [&](const RayCloud& rays) { return blocks::extract_all<Record>(rays, extract); };
+  const std::size_t memory = memory_budget(context);
+
+  // All in one block, unless it turns out to be too large.
+  blocks::EndSampler sampler;
+  Block<Record> whole;
+  const std::size_t fitting = memory / needs.bytes_per_record;
+  if (source.info().ray_count)
+    whole.records.reserve(std::min<std::uint64_t>(*source.info().ray_count, fitting));
+  stream(context, source, nullptr, extract_chunk, [&](const RayCloud&, const Extracted& extracted) {
+    for (const Eigen::Vector3d& end : extracted.ends)
+      sampler.add(end);
+    if (sampler.sample().bounded <= fitting)
+      whole.records.insert(whole.records.end(), extracted.records.begin(), extracted.records.end());
+    else
+      whole.records = {};
+  });
+  source.rewind();
+  const EndSample& sample = sampler.sample();
+  const double reach = needs.reach(sample);
+
+  std::vector<Result> results;
+  std::unique_ptr<blocks::SpilledBlocks<Record, Result>> spilled;
+  if (sample.bounded <= fitting) {
+    results = compute(context, std::move(whole), reach);
+  } else {
+    // What lies around a block takes room too.
+    const std::size_t parts = 2 * (sample.bounded * needs.bytes_per_record / memory + 1);
+    spilled = std::make_unique<blocks::SpilledBlocks<Record, Result>>(sample, std::min(parts, kMostBlocks),
+                                                                      reach, memory);
+    stream(context, source, nullptr, extract_chunk,
+           [&](const RayCloud&, const Extracted& extracted) { spilled->add(extracted); });
+    source.rewind();
+    spilled->compute(context, compute);
+  }
+
+  std::size_t next = 0;
+  std::vector<Result> of_chunk;
+  const auto parts_of = [&](const RayCloud& rays) {
+    std::vector<std::uint32_t> parts;
+    if (spilled == nullptr) return parts;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (rays.bounded[i] != 0) parts.push_back(static_cast<std::uint32_t>(spilled->part_of(rays.ends[i])));
+    return parts;
+  };
+  return stream(context, source, &sink, parts_of,
+                [&](RayCloud& rays, const std::vector<std::uint32_t>& parts) {
+                  if (spilled != nullptr) {
+                    of_chunk.clear();
+                    for (const std::uint32_t part : parts)
+                      of_chunk.push_back(spilled->next(part));
+                    return apply(rays, std::span<const Result>(of_chunk));
+                  }
+                  const auto count = static_cast<std::size_t>(
+                      std::count_if(rays.bounded.begin(), rays.bounded.end(), [](auto b) { return b != 0; }));
+                  next += count;
+                  return apply(rays, std::span<const Result>(results).subspan(next - count, count));
+                });
+}
+
+}  // namespace ray

@@ -1,0 +1,54 @@
+#include <raycloud/exec/space_cuts.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace ray {
+
+SpaceCuts::SpaceCuts(std::vector<Eigen::Vector3d> sample, std::size_t parts)
+    : cuts_(sample.empty() ? 1 : std::bit_ceil(std::max<std::size_t>(parts, 1))) {
+  cut(1, sample);
+}
+
+void SpaceCuts::cut(std::size_t node, std::span<Eigen::Vector3d> sample) {
+  if (node >= cuts_.size()) return;
+  if (sample.empty()) {  // this half is as empty as its sample: what comes here goes to one part
+    cut(2 * node, sample);
+    cut(2 * node + 1, sample);
+    return;
+  }
+  Eigen::Vector3d low = sample.front(), high = sample.front();
+  for (const Eigen::Vector3d& point : sample) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  const std::size_t middle = sample.size() / 2;
+  std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(middle), sample.end(),
+                   [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
+  cuts_[node] = {axis, sample[middle][axis]};
+  cut(2 * node, sample.first(middle));
+  cut(2 * node + 1, sample.subspan(middle));
+}
+
+void SpaceCuts::parts_near(const Eigen::Vector3d& point, double reach,
+                           std::vector<std::uint32_t>& found) const {
+  found.clear();
+  find_near(1, point, reach, found);
+}
+
+void SpaceCuts::find_near(std::size_t node, const Eigen::Vector3d& point, double reach,
+                          std::vector<std::uint32_t>& found) const {
+  if (node >= cuts_.size()) {
+    found.push_back(static_cast<std::uint32_t>(node - cuts_.size()));
+    return;
+  }
+  const double beyond = point[cuts_[node].axis] - cuts_[node].at;
+  // Not a hair too near: the difference is rounded.
+  const double margin = reach * (1.0 + 1e-12) + std::abs(cuts_[node].at) * 1e-15;
+  if (beyond <= margin) find_near(2 * node, point, reach, found);
+  if (beyond >= -margin) find_near(2 * node + 1, point, reach, found);
+}
+
+}  // namespace ray

@@ -1,0 +1,202 @@
+#include <raycloud/exec/parallel.h>
+#include <raycloud/exec/random.h>
+#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/surfel.h>
+#include <raycloud/spatial/symmetric_eigen.h>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ray {
+namespace {
+
+enum class Arrangement { uniform, clustered, collinear, coplanar, duplicate, identical, grid, with_outlier };
+constexpr std::array kArrangements{Arrangement::uniform,  Arrangement::clustered,   Arrangement::collinear,
+                                   Arrangement::coplanar, Arrangement::duplicate,   Arrangement::identical,
+                                   Arrangement::grid,     Arrangement::with_outlier};
+
+std::vector<SeenPoint> arranged(Arrangement arrangement, std::size_t count, std::uint64_t seed,
+                                const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) {
+  const RandomStream random(seed, "arranged points");
+  std::vector<SeenPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto uniform = [&](std::uint64_t draw) { return 2.0 * random.uniform(i, draw) - 1.0; };
+    Eigen::Vector3d p(uniform(0), uniform(1), uniform(2));
+    if (arrangement == Arrangement::clustered) p = p.array().cube() * p.array().square();
+    if (arrangement == Arrangement::collinear) p = {p.x(), 2.0 * p.x(), -p.x()};
+    if (arrangement == Arrangement::coplanar) p.z() = 0.5;
+    if (arrangement == Arrangement::duplicate && i % 3 != 0) p = points[i / 3 * 3].end - origin;
+    if (arrangement == Arrangement::identical) p = {1.0, 2.0, 3.0};
+    if (arrangement == Arrangement::grid) p = (p * 10.0).array().round() / 10.0;
+    if (arrangement == Arrangement::with_outlier && i == count / 2) p = {1e7, 0.0, 0.0};
+    points[i].end = origin + p;
+    points[i].to_sensor = pack_direction({uniform(3), uniform(4), uniform(5)});
+  }
+  return points;
+}
+
+using Found = std::vector<std::pair<double, std::uint32_t>>;  // squared distance, index
+
+template <class Accept>
+Found brute_force(const std::vector<SeenPoint>& points, std::size_t i, std::size_t count, double reach,
+                  const Accept& accept) {
+  Found all;
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    const Eigen::Vector3d d = points[j].end - points[i].end;
+    const double distance2 = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+    if (j != i && distance2 <= reach * reach && accept(j))
+      all.emplace_back(distance2, static_cast<std::uint32_t>(j));
+  }
+  const auto kept = static_cast<std::ptrdiff_t>(std::min(count, all.size()));
+  std::partial_sort(all.begin(), all.begin() + kept, all.end());
+  all.resize(static_cast<std::size_t>(kept));
+  return all;
+}
+
+Found sorted(const PointTree& tree, std::span<const Neighbour> neighbours) {
+  Found found;
+  for (const Neighbour& neighbour : neighbours)
+    found.emplace_back(neighbour.distance2, tree.index(neighbour.place));
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForce, ()) {
+  const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
+  const auto count = *rc::gen::inRange<std::size_t>(1, 400);
+  const auto wanted = *rc::gen::inRange<std::size_t>(0, 40);
+  const double reach = *rc::gen::element(1e9, 0.3, 0.05);
+  const Eigen::Vector3d origin =
+      *rc::gen::element(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(5e5, 6.9e6, 100.0));
+  const std::vector<SeenPoint> points =
+      arranged(arrangement, count, *rc::gen::arbitrary<std::uint64_t>(), origin);
+  const PointTree tree({}, points);
+  RC_ASSERT(tree.size() == count);
+  NeighbourSearch search(tree);
+  const Eigen::Vector3d normal(0.3, -0.5, 0.8);
+  std::vector<std::uint8_t> seen(count);
+  for (std::size_t place = 0; place < count; ++place) {
+    const std::uint32_t i = tree.index(place);
+    seen[i] = 1;
+    RC_ASSERT(tree.point(place) == points[i].end);
+    RC_ASSERT(tree.to_sensor(place) == points[i].to_sensor);
+    RC_ASSERT(sorted(tree, search.nearest(place, wanted, reach)) ==
+              brute_force(points, i, wanted, reach, [](std::size_t) { return true; }));
+    RC_ASSERT(sorted(tree, search.nearest_facing(place, wanted, reach, normal)) ==
+              brute_force(points, i, wanted, reach, [&](std::size_t j) {
+                const PackedDirection& d = points[j].to_sensor;
+                return normal.x() * d[0] + normal.y() * d[1] + normal.z() * d[2] >= 0.0;
+              }));
+  }
+  RC_ASSERT(std::count(seen.begin(), seen.end(), 1) == static_cast<std::ptrdiff_t>(count));
+}
+
+/// Large enough for several buckets; queries in any order.
+TEST(PointTree, NeighboursOfManyPointsAreThoseOfBruteForce) {
+  for (const Arrangement arrangement : kArrangements) {
+    const std::vector<SeenPoint> points = arranged(arrangement, 40000, 7);
+    const PointTree tree({.threads = 3}, points);
+    NeighbourSearch search(tree);
+    for (std::size_t i = 0; i < 100; ++i) {
+      const std::size_t place = i * 7919 % tree.size();
+      EXPECT_EQ(sorted(tree, search.nearest(place, 16, 1e9)),
+                brute_force(points, tree.index(place), 16, 1e9, [](std::size_t) { return true; }));
+    }
+  }
+}
+
+/// Ties by index must not make each of many equal points look at all others.
+TEST(PointTree, ManyIdenticalPointsTakeNoMoreTimeThanOthers) {
+  const std::vector<SeenPoint> points = arranged(Arrangement::identical, 300000, 1);
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  for (std::size_t place = 0; place < tree.size(); ++place)
+    ASSERT_EQ(search.nearest(place, 16, 1.0).size(), 16U);
+}
+
+TEST(PointTree, NoPoints) {
+  EXPECT_EQ(PointTree({}, {}).size(), 0U);
+}
+
+RC_GTEST_PROP(SymmetricEigen, AgreesWithIteration, ()) {
+  const auto element = [] {
+    return static_cast<double>(*rc::gen::inRange(-1000, 1000)) * *rc::gen::element(1.0, 1e-3, 1e-7, 0.0);
+  };
+  Eigen::Matrix3d m;
+  for (Eigen::Index i = 0; i < 9; ++i)
+    m(i) = element();
+  m = (m * m.transpose() * *rc::gen::element(1.0, 1e-9, 1e12)).eval();
+  const SymmetricEigen got = symmetric_eigen(m);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> expected(m);
+  const double largest = expected.eigenvalues().cwiseAbs().maxCoeff();
+  RC_ASSERT((got.values - expected.eigenvalues()).cwiseAbs().maxCoeff() <= 1e-7 * largest);
+  RC_ASSERT((got.vectors.transpose() * got.vectors - Eigen::Matrix3d::Identity()).norm() < 1e-9);
+  RC_ASSERT((got.vectors * got.values.asDiagonal() * got.vectors.transpose() - m).norm() <= 1e-7 * largest);
+}
+
+/// Both sides of a wall, `thickness` apart, each seen from its own side.
+std::vector<SeenPoint> wall(double thickness, double noise, std::size_t count) {
+  const RandomStream random(3, "wall");
+  std::vector<SeenPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const double off =
+        noise * (random.uniform(i, 2) + random.uniform(i, 3) + random.uniform(i, 4) - 1.5) * 2.0;
+    points[i].end = {random.uniform(i, 0) * 3.0, random.uniform(i, 1) * 3.0, side * 0.5 * thickness + off};
+    points[i].to_sensor = pack_direction(Eigen::Vector3d(1.0, 1.0, side * 3.0));
+  }
+  return points;
+}
+
+TEST(Surfel, EachSideOfAThinWallIsASurfaceOfItsOwn) {
+  const std::vector<SeenPoint> points = wall(0.05, 0.002, 10000);
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  for (std::size_t place = 0; place < tree.size(); ++place) {
+    const double side = tree.index(place) % 2 == 0 ? 1.0 : -1.0;
+    const Surfel surfel = surfel_at(search, place, {});
+    EXPECT_EQ(surfel.count, 17U);
+    EXPECT_GT(surfel.normal.z() * side, 0.9);
+    EXPECT_NEAR(surfel.centroid.z(), side * 0.025, 0.005);
+    EXPECT_LT(std::sqrt(surfel.variances[0]), 0.006);
+  }
+}
+
+/// What the outcome of a block may depend on: its points, not how many others there are out of reach, nor
+/// threads.
+TEST(Surfel, SameBitsWhateverTheTree) {
+  const std::vector<SeenPoint> points = wall(0.05, 0.02, 30000);
+  std::vector<SeenPoint> more = points;
+  for (const SeenPoint& point : points)
+    more.push_back({point.end + Eigen::Vector3d(50.0, 0.0, 0.0), point.to_sensor});
+  const auto surfels = [](const std::vector<SeenPoint>& all, unsigned threads) {
+    const PointTree tree({.threads = threads}, all);
+    NeighbourSearch search(tree);
+    std::vector<Surfel> result(all.size());
+    for (std::size_t place = 0; place < tree.size(); ++place)
+      result[tree.index(place)] = surfel_at(search, place, {.reach = 10.0});
+    return result;
+  };
+  const std::vector<Surfel> expected = surfels(points, 1);
+  for (const std::vector<Surfel>& other : {surfels(points, 3), surfels(more, 2)}) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_EQ(other[i].normal, expected[i].normal);
+      ASSERT_EQ(other[i].centroid, expected[i].centroid);
+      ASSERT_EQ(other[i].variances, expected[i].variances);
+    }
+  }
+}
+
+TEST(Surfel, ShapesOfALineAPlaneAndABall) {
+  EXPECT_NEAR(shape_of({.variances = {0.0, 0.0, 1.0}}).cylindricality, 1.0, 1e-12);
+  EXPECT_NEAR(shape_of({.variances = {0.0, 1.0, 1.0}}).planarity, 1.0, 1e-12);
+  EXPECT_NEAR(shape_of({.variances = {1.0, 1.0, 1.0}}).sphericity, 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace ray
