@@ -76,7 +76,7 @@ void print_denoising() {
     const char* name;
     NoiseKinds kinds;
   };
-  std::printf("\nDenoising: the share of each kind that is removed, from %d scans of a room\n\n", kSeeds);
+  std::printf("\nDenoising: the share of each kind that is removed, from %d scans of a room\n\n", kScans);
   print_counts();
   std::printf(
       "| noise in the scan, command | uniform, ≥ 90 %% | mixed, ≥ 80 %% | dust, ≥ 80 %% | "
@@ -86,7 +86,7 @@ void print_denoising() {
         Case{"dust", {.dust = true}}, Case{"all", {true, true, true}}}) {
     Removed by_sigmas;
     Removed by_range;
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
       const Sampled scan = room_scan(seed, one.kinds);
       by_sigmas.add(scan, ray::OutsideNeighbours{3.0});
       by_range.add(scan, ray::OnRangeEdges{{0.04}});

@@ -31,6 +31,7 @@ struct Rod {  ///< a cylinder without ends, seen from outside
 };
 
 const std::array kBoxes{Box{{0.9, 0.6, 0.0}, {1.7, 1.2, 0.7}}, Box{{-2.2, -1.9, 0.70}, {-0.8, -1.1, 0.73}}};
+constexpr int kRails = 20;
 const std::array kRods{Rod{{1.6, -1.2, 0.0}, {1.6, -1.2, 2.6}, 0.04, kSolid},
                        Rod{{-1.5, 1.4, 0.0}, {-1.5, 1.4, 2.6}, 0.04, kSolid},
                        Rod{{0.2, 1.9, 0.0}, {0.2, 1.9, 2.6}, 0.04, kSolid},
@@ -91,6 +92,10 @@ Hit cast(const Vector3d& origin, const Vector3d& direction) {
   }
   for (const Rod& rod : kRods)
     meet_rod(rod, origin, direction, hit);
+  for (int i = 0; i < kRails; ++i) {
+    const Vector3d foot(2.3, 0.2 * i - 1.9, 0.0);
+    meet_rod({foot, foot + 1.2 * Vector3d::UnitZ(), 0.025, kSolid}, origin, direction, hit);
+  }
   return hit;
 }
 
@@ -141,6 +146,7 @@ void add_noise(Sampled& scan, const std::vector<Hit>& hits, const NoiseKinds& ki
   }
   if (kinds.mixed) {
     maker.put(kMixed, [&](std::size_t row, double u, double v) -> std::optional<double> {
+      if (row / kBeams % 2 == 1) return std::nullopt;  // every edge keeps real neighbours
       const std::size_t other = u < 0.5 ? row - kBeams : row + kBeams;
       if (other >= hits.size() || hits[other].part == kNothing || hits[row].part == kNothing)
         return std::nullopt;

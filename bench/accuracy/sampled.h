@@ -22,7 +22,7 @@ struct Truth {
 };
 
 constexpr double kRim = 0.2;  // m
-constexpr int kSeeds = 3;     // pooled
+constexpr int kSeeds = 5;     // pooled
 
 struct Sampled {
   ray::RayCloud rays;

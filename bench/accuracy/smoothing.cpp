@@ -48,7 +48,7 @@ void smoothing_row(const std::string& what, const Versions& errors, double least
   if (least_ratio > 0.0) std::snprintf(bar, sizeof bar, "≥ %g times", least_ratio);
   std::printf("| %s | %.2f mm | %.2f mm | %.2f | %.2f mm | %.2f | %s |\n", what.c_str(), 1e3 * before,
               1e3 * after, before / after, 1e3 * plain, before / plain,
-              least_ratio > 0.0 ? verdict(bar, before / after >= least_ratio).c_str() : "| ");
+              least_ratio > 0.0 ? verdict(bar, before / after >= least_ratio).c_str() : "|");
   std::fflush(stdout);
 }
 
@@ -68,8 +68,8 @@ double above_plane(const Vector3d& end, const Truth& truth) {
 void smooth_planes() {
   const auto add = [](Sampled& out, const Sampling& sampling) {
     const double half = 50 * sampling.spacing;
-    add_samples(out, rectangle({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}), {{0, 0, 3}, {1, 1, 4}},
-                sampling);
+    add_samples(out, rectangle({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}),
+                {{0, 0, 3 * half}, {half, half, 4 * half}}, sampling);
   };
   for (const double spacing : {0.03, 0.05, 0.10}) {
     Versions errors;
