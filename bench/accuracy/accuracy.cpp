@@ -1,6 +1,6 @@
 // How true normals, smoothing and denoising are, on scenes whose truth is known.
 //   bench_accuracy [normals|smoothing|denoising]
-// Prints Markdown tables; the same numbers on every run.
+// Prints Markdown tables; the same numbers on every run, whatever the threads.
 
 #include "tables.h"
 
