@@ -11,8 +11,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <numbers>
 #include <string>
+#include <vector>
 
 namespace bench {
 
@@ -22,9 +25,6 @@ using Eigen::Vector3d;
 
 /// Adds a scene's points.
 using Scenery = std::function<void(Sampled&, const Sampling&)>;
-
-/// Without a bar for what there is no other side of.
-constexpr double kNoBar = 0.0;
 
 struct Angles {
   double median = 0.0;  ///< degrees
@@ -58,11 +58,11 @@ Angles pooled_angles(const Scenery& scenery, Sampling sampling, bool by_side) {
   return {quantile(angles, 0.5), quantile(angles, 0.95)};
 }
 
-/// Returns the median with rays. `plane` is that of a plane like this.
+/// Returns the median with rays. `plane` is that of a plane like this; 0 where there is no bar.
 double normals_row(const std::string& what, const Scenery& scenery, const Sampling& sampling, double plane) {
   const Angles with = pooled_angles(scenery, sampling, true);
   const Angles without = pooled_angles(scenery, sampling, false);
-  const bool has_bar = plane > kNoBar;
+  const bool has_bar = plane > 0.0;
   std::printf("| %s | %g cm | %g cm | %.2f° | %.2f° | %.2f° | %.2f° | %s |\n", what.c_str(),
               100 * sampling.spacing, 100 * sampling.noise, with.median, with.most, without.median,
               without.most, has_bar ? verdict("≤ 1.15 × a plane", with.median <= 1.15 * plane).c_str() : "|");
