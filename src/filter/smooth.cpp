@@ -13,7 +13,8 @@ namespace {
 struct LocalPlane {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // zero: there is none
   float height = 0.0F;                               // m
-  float reach = 0.0F;                                // m, of its neighbours
+  float spread2 = 0.0F;  // m², variance of its points along it, both ways together
+  float reach = 0.0F;    // m, of its neighbours
 };
 
 LocalPlane plane_of(const PointTree& tree, std::size_t place, const Surfel& surfel) {
@@ -21,44 +22,138 @@ LocalPlane plane_of(const PointTree& tree, std::size_t place, const Surfel& surf
   const double height = surfel.normal.dot(surfel.centroid - tree.point(place));
   return {
       surfel.normal.cast<float>(), static_cast<float>(height),
+      static_cast<float>(surfel.variances[1] + surfel.variances[2]),
       std::nextafter(static_cast<float>(std::sqrt(surfel.reach2)), std::numeric_limits<float>::infinity())};
 }
 
-/// Sums of fixed-point numbers do not depend on the order of the terms.
-std::int64_t to_fixed(double value) {
-  return static_cast<std::int64_t>(std::nearbyint(value * 0x1p36));
-}
+/// The surface near a point, seen from the plane through it across its normal.
+struct LocalSurface {
+  float height = 0.0F;     // m, along the normal, as if it were flat
+  float curvature = 0.0F;  // 1/m, the mean of both
+  float lever = 0.0F;      // m², by which curvature makes that height wrong
+};
 
-/// How far along `direction` (a unit vector) the surface is from a point: the mean of what the planes of its
-/// neighbours say. On a curved surface the planes lie too low in the middle, by a half of the variance of
-/// their points times the curvature, and rise above the surface by as much on average where they are read
-/// off: the errors cancel.
-double distance_to_surface(const PointTree& tree, std::span<const LocalPlane> planes, std::size_t place,
-                           std::span<const Neighbour> neighbours, const Eigen::Vector3d& direction) {
-  constexpr double kSteepest = 0.2;  // of a plane to the direction along which it is read off
-  const Eigen::Vector3d point = tree.point(place);
-  const Eigen::Vector3d own_normal = planes[place].normal.cast<double>();
-  std::int64_t sum = 0, weights = 0;
-  const auto add = [&](std::size_t other) {
-    const LocalPlane& plane = planes[other];
-    const Eigen::Vector3d normal = plane.normal.cast<double>();
-    const double facing = normal.dot(direction);
-    double alike = normal.dot(own_normal);
-    if (!(facing > kSteepest) || !(alike > 0.0)) return;
-    alike *= alike;
-    alike *= alike;
-    const double distance =
-        (normal.dot(tree.point(other) - point) + static_cast<double>(plane.height)) / facing;
-    sum += to_fixed(alike * distance);
-    weights += to_fixed(alike);
+/// From the planes of the neighbours, seen as a sample of a surface and its slopes. Their mean height is the
+/// height of the surface but for its curvature, which pulls it towards the hollow side twice: the points of
+/// each plane lie on a curved surface, and so do the planes. The curvature is how much their slopes change
+/// from place to place.
+class SurfaceFit {
+ public:
+  SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes) : tree_(tree), planes_(planes) {}
+
+  [[nodiscard]] LocalSurface at(std::size_t place, std::span<const Neighbour> neighbours) {
+    take(place, neighbours);
+    if (!(weight_ > 0.0)) return {};
+    const Eigen::Vector3d offset = sum_offset_ / weight_;
+    const Eigen::Vector3d slope = sum_slope_ / weight_;
+    double change = 0.0, extent2 = 0.0;
+    for (const Sample& sample : samples_) {
+      change += sample.weight * (sample.slope - slope).dot(sample.offset - offset);
+      extent2 += sample.weight * (sample.offset - offset).squaredNorm();
+    }
+    const double height = sum_height_ / weight_ - slope.dot(offset);
+    if (!(extent2 > 0.0)) return {static_cast<float>(height), 0.0F, 0.0F};
+    const double lever = 0.5 * ((sum_spread2_ + extent2) / weight_ - offset.squaredNorm());
+    return {static_cast<float>(height), static_cast<float>(change / extent2), static_cast<float>(lever)};
+  }
+
+  /// The height of the surface at a point, by the heights at its neighbours. A curvature from 17 planes is
+  /// still too noisy, so it is averaged over them, and trusted as far as it is more than their disagreement.
+  [[nodiscard]] double height(std::size_t place, std::span<const Neighbour> neighbours,
+                              std::span<const LocalSurface> surfaces) {
+    sort(place, neighbours);
+    const Eigen::Vector3d point = tree_.point(place);
+    const Eigen::Vector3d up = planes_[place].normal.cast<double>();
+    double weight = 0.0, height = 0.0, lever = 0.0, curvature = 0.0, curvature2 = 0.0;
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero(), slope = Eigen::Vector3d::Zero();
+    for (const std::uint64_t entry : order_) {
+      const std::size_t other = entry & 0xffffffff;
+      const Eigen::Vector3d normal = planes_[other].normal.cast<double>();
+      const double alike = normal.dot(up);
+      if (!(alike > kLeastAlike)) continue;
+      const LocalSurface& surface = surfaces[other];
+      const double w = alike * alike * alike * alike;
+      const Eigen::Vector3d away = tree_.point(other) + static_cast<double>(surface.height) * normal - point;
+      const double up_there = away.dot(up);
+      const Eigen::Vector3d across = away - up_there * up;
+      weight += w;
+      height += w * up_there;
+      offset += w * across;
+      slope += w * (up - normal / alike);
+      lever += w * (static_cast<double>(surface.lever) + 0.5 * across.squaredNorm());
+      curvature += w * static_cast<double>(surface.curvature);
+      curvature2 += w * static_cast<double>(surface.curvature) * static_cast<double>(surface.curvature);
+    }
+    if (!(weight > 0.0)) return 0.0;
+    offset /= weight;
+    const double mean = curvature / weight;
+    const double doubt2 = kCaution * std::max(curvature2 / weight - mean * mean, 0.0) / weight;
+    const double sure2 = mean * mean * mean * mean;
+    const double trust = sure2 > 0.0 ? sure2 / (sure2 + doubt2 * doubt2) : 0.0;
+    return height / weight - slope.dot(offset) / weight -
+           trust * mean * (lever / weight - offset.squaredNorm());
+  }
+
+ private:
+  struct Sample {
+    double weight;
+    Eigen::Vector3d offset;  // from the point, across its normal
+    Eigen::Vector3d slope;
   };
-  add(place);
-  for (const Neighbour& neighbour : neighbours)
-    add(neighbour.place);
-  return weights > 0 ? static_cast<double>(sum) / static_cast<double>(weights) : 0.0;
-}
+
+  /// In the order of the rays, whatever that of the tree is.
+  void sort(std::size_t place, std::span<const Neighbour> neighbours) {
+    order_.clear();
+    order_.push_back(std::uint64_t{tree_.index(place)} << 32 | place);
+    for (const Neighbour& neighbour : neighbours)
+      order_.push_back(std::uint64_t{tree_.index(neighbour.place)} << 32 | neighbour.place);
+    std::sort(order_.begin(), order_.end());
+  }
+
+  void take(std::size_t place, std::span<const Neighbour> neighbours) {
+    sort(place, neighbours);
+    samples_.clear();
+    weight_ = sum_height_ = sum_spread2_ = 0.0;
+    sum_offset_.setZero();
+    sum_slope_.setZero();
+    const Eigen::Vector3d point = tree_.point(place);
+    const Eigen::Vector3d up = planes_[place].normal.cast<double>();
+    for (const std::uint64_t entry : order_) {
+      const std::size_t other = entry & 0xffffffff;
+      const LocalPlane& plane = planes_[other];
+      const Eigen::Vector3d normal = plane.normal.cast<double>();
+      const double alike = normal.dot(up);
+      if (!(alike > kLeastAlike)) continue;
+      const double weight = alike * alike * alike * alike;
+      const Eigen::Vector3d away = tree_.point(other) + static_cast<double>(plane.height) * normal - point;
+      const double height = away.dot(up);
+      samples_.push_back({weight, away - height * up, up - normal / alike});
+      weight_ += weight;
+      sum_height_ += weight * height;
+      sum_spread2_ += weight * static_cast<double>(plane.spread2);
+      sum_offset_ += weight * samples_.back().offset;
+      sum_slope_ += weight * samples_.back().slope;
+    }
+  }
+
+  // The curvatures of neighbours come from much the same planes, and their mean is less sure than it looks.
+  static constexpr double kCaution = 14.0;
+  static constexpr double kLeastAlike = 0.3;  // cosine between normals of one surface
+
+  const PointTree& tree_;
+  std::span<const LocalPlane> planes_;
+  std::vector<std::uint64_t> order_;  // index and place of the point and its neighbours
+  std::vector<Sample> samples_;
+  double weight_ = 0.0, sum_height_ = 0.0, sum_spread2_ = 0.0;
+  Eigen::Vector3d sum_offset_, sum_slope_;
+};
 
 using Move = Eigen::Vector3f;  // m
+
+std::span<const Neighbour> neighbours_of(NeighbourSearch& search, std::size_t place,
+                                         const LocalPlane& plane) {
+  return search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+}
 
 std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block, double reach) {
   const PointTree tree(context, block.records);
@@ -67,21 +162,31 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)
       planes[place] =
-          plane_of(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
+          plane_of(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 3.0, true}));
+  });
+  std::vector<LocalSurface> surfaces(tree.size());
+  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    SurfaceFit fit(tree, planes);
+    for (std::size_t place = begin; place < end; ++place) {
+      if (planes[place].normal.isZero()) continue;
+      surfaces[place] = fit.at(place, neighbours_of(search, place, planes[place]));
+    }
   });
   std::vector<Move> moves(tree.size(), Move::Zero());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     constexpr double kFacing = 0.3;  // cosine from which on the ray is better than the normal
+    SurfaceFit fit(tree, planes);
     for (std::size_t place = begin; place < end; ++place) {
       const LocalPlane& plane = planes[place];
       if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
+      const double height = fit.height(place, neighbours_of(search, place, plane), surfaces);
       const Eigen::Vector3d normal = plane.normal.cast<double>();
       const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place)).normalized();
-      const Eigen::Vector3d direction = ray.dot(normal) > kFacing ? ray : normal;
-      const auto neighbours = search.nearest_facing(place, kSurfaceNeighbours, plane.reach, normal);
-      const double distance = distance_to_surface(tree, planes, place, neighbours, direction);
+      const double facing = ray.dot(normal);
+      const bool along_ray = facing > kFacing;
       const double most = plane.reach;
-      moves[tree.index(place)] = (std::clamp(distance, -most, most) * direction).cast<float>();
+      const double distance = std::clamp(along_ray ? height / facing : height, -most, most);
+      moves[tree.index(place)] = (distance * (along_ray ? ray : normal)).cast<float>();
     }
   });
   return moves;
@@ -90,9 +195,9 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
 }  // namespace
 
 StreamCounts smooth_rays(const Context& context, RaySource& source, RaySink& sink) {
-  // The surface at a point depends on the planes of its neighbours, which depend on theirs.
+  // The surface at a point depends on the curvature at its neighbours, which depends on the planes of theirs.
   const BlockNeeds needs{.bytes_per_record = 90,
-                         .reach = [](const EndSample& sample) { return 2.0 * neighbour_reach(sample); }};
+                         .reach = [](const EndSample& sample) { return 3.0 * neighbour_reach(sample); }};
   return run_blocks<SeenPoint, Move>(context, source, sink, needs, seen_point, smooth_block,
                                      [](RayCloud& rays, std::span<const Move> moves) {
                                        std::size_t next = 0;

@@ -78,6 +78,32 @@ bool any_from_behind(const PointTree& tree, const Eigen::Vector3d& normal,
   });
 }
 
+/// The normal of a thicker surfel may be any.
+bool is_flat(const Surfel& surfel, double flat = 0.1) {
+  return surfel.variances[0] <= flat * surfel.variances[1];
+}
+
+/// From within 30 degrees of the direction that this point was seen from: one side.
+bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
+  constexpr double kAlike = 0.87 * 32767.0 * 32767.0;
+  const PackedDirection& own = tree.to_sensor(place);
+  return std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
+    const PackedDirection& d = tree.to_sensor(neighbour.place);
+    const std::int32_t x = own[0] * d[0], y = own[1] * d[1], z = own[2] * d[2];
+    return 1.0 * x + y + z >= kAlike;
+  });
+}
+
+/// A direction to tell sides by, where the nearest neighbours are no flat surface: the normal of more of
+/// them, if that is one, as it is where the two sides of a wall are no further apart than their points; else
+/// the ray.
+Eigen::Vector3d side_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
+  const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
+  const Surfel surfel = surfel_of(search.tree(), place, search.nearest(place, wide, rule.reach));
+  constexpr double kFlatEnough = 0.4;  // for that many
+  return is_flat(surfel, kFlatEnough) ? surfel.normal : unpack_direction(search.tree().to_sensor(place));
+}
+
 }  // namespace
 
 Shape shape_of(const Surfel& surfel) {
@@ -90,15 +116,14 @@ Shape shape_of(const Surfel& surfel) {
 
 Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
   const PointTree& tree = search.tree();
-  constexpr double kFlat = 0.1;  // of the second variance: the normal of a thicker surfel may be any
   constexpr int kRounds = 2;
-  auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
+  const auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
   Surfel surfel = surfel_of(tree, place, neighbours);
   if (!rule.by_side) return surfel;
-  const bool flat = surfel.variances[0] <= kFlat * surfel.variances[1];
-  Eigen::Vector3d side = flat ? surfel.normal : unpack_direction(tree.to_sensor(place));
-  if (!any_from_behind(tree, surfel.normal, neighbours) && (flat || !any_from_behind(tree, side, neighbours)))
+  const bool flat = is_flat(surfel);
+  if (flat ? !any_from_behind(tree, surfel.normal, neighbours) : all_seen_alike(tree, place, neighbours))
     return surfel;
+  Eigen::Vector3d side = flat ? surfel.normal : side_of_thick(search, place, rule);
   for (int round = 0; round < kRounds; ++round) {
     surfel = surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
     side = surfel.normal;

@@ -123,6 +123,8 @@ raycombine $1 --join
 raycolour $1 time
 raycolour $1 alpha 0.5
 raypipe $1 colour height : translate 1,2,3
+raysmooth $1
+raypipe $1 smooth : colour time
 rayrender $1 top ends
 END
 }

@@ -23,6 +23,7 @@ inline constexpr std::array kCommands{
     ListedCommand{"rayrestore", "apply the edits of a thinned ray cloud to the full one"},
     ListedCommand{"raycolour", "colour a ray cloud"},
     ListedCommand{"raypipe", "run several commands as one, without files between them"},
+    ListedCommand{"raysmooth", "move end points onto the surface they are samples of"},
     ListedCommand{"raysplit", "split a ray cloud in two, or into cells"},
     ListedCommand{"raycombine", "put ray clouds together"},
     ListedCommand{"rayrender", "picture a ray cloud"},

@@ -10,6 +10,7 @@ namespace ray::tools {
 extern const Step kColourStep;
 extern const Step kDecimateStep;
 extern const Step kRotateStep;
+extern const Step kSmoothStep;
 extern const Step kSplitStep;
 extern const Step kTranslateStep;
 

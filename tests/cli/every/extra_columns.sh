@@ -18,6 +18,8 @@ for out in ply laz las; do
   columns "out.$out" | cmp - expected
   raydecimate -q cloud.ply 1 ray -o "out.$out"
   columns "out.$out" | cmp - expected
+  raysmooth -q cloud.ply -o "smooth.$out"
+  columns "smooth.$out" | cmp - expected
   for form in 'range 1.5' 'plane 0,0,3.5'; do
     raysplit -q cloud.ply $form -o "side.$out"
     raycombine -q "side.$out" "side_outside.$out" -o all.ply

@@ -1,6 +1,7 @@
 # One ray goes through every command.
 make_cloud one.ply 1
 raydecimate one.ply 10 cm -o thin.ply
+raysmooth thin.ply
 raytranslate thin.ply 1,2,3
 rayrotate thin.ply 0,0,90
 rayrender thin.ply top ends

@@ -2,6 +2,7 @@
 make_cloud zero.ply 0
 raydecimate zero.ply 10 cm -o thin.ply
 raydecimate zero.ply 10 rays -o every.ply
+raysmooth zero.ply
 raytranslate thin.ply 1,2,3
 rayrotate thin.ply 0,0,90
 rayexport thin.ply points.ply -
