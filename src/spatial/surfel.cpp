@@ -116,19 +116,23 @@ Shape shape_of(const Surfel& surfel) {
 
 Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
   const PointTree& tree = search.tree();
-  constexpr int kRounds = 2;
   const auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
   Surfel surfel = surfel_of(tree, place, neighbours);
   if (!rule.by_side) return surfel;
   const bool flat = is_flat(surfel);
-  if (flat ? !any_from_behind(tree, surfel.normal, neighbours) : all_seen_alike(tree, place, neighbours))
-    return surfel;
-  Eigen::Vector3d side = flat ? surfel.normal : side_of_thick(search, place, rule);
-  for (int round = 0; round < kRounds; ++round) {
-    surfel = surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
-    side = surfel.normal;
-  }
-  return surfel;
+  const bool from_behind = any_from_behind(tree, surfel.normal, neighbours);
+  if (flat ? !from_behind : all_seen_alike(tree, place, neighbours)) return surfel;
+  const auto of_side = [&](const Eigen::Vector3d& side) {
+    return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
+  };
+  if (flat) return of_side(of_side(surfel.normal).normal);
+  // Round or thick? The first way of telling sides, if it leaves a clearly flatter surface.
+  const Eigen::Vector3d side = side_of_thick(search, place, rule);
+  if (from_behind) surfel = of_side(surfel.normal);
+  const Surfel other = of_side(side);
+  const bool other_is_flatter =
+      other.variances[0] * surfel.variances[1] < surfel.variances[0] * other.variances[1];
+  return of_side((other_is_flatter ? other : surfel).normal);
 }
 
 }  // namespace ray

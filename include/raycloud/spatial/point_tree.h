@@ -72,8 +72,9 @@ class NeighbourSearch {
 
   explicit NeighbourSearch(const PointTree& tree) : tree_(tree) {}
 
-  /// The `count` nearest other points within `reach` (m, inclusive), nearest first, ties by index; fewer
-  /// where there are fewer. Valid until the next call. About 1 µs for 16. Precondition: count <= kMost.
+  /// The `count` nearest other points within `reach` (m, inclusive), ties by index; fewer where there
+  /// are fewer. In no order that could be relied on. Valid until the next call. About 1 µs for 16.
+  /// Precondition: count <= kMost.
   std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach);
 
   /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.

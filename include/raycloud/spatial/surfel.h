@@ -42,8 +42,9 @@ struct SurfelRule {
 
 /// The surfel of the point at `place`. The nearest neighbours give a first normal; where some of them were
 /// seen from its other side, the nearest that were not are taken instead, twice over as the normal changes.
-/// The result depends on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one
-/// to three searches.
+/// Where the nearest neighbours are no flat surface, as around a pole or at a wall no thicker than its points
+/// are apart, more of them, or the ray, tell another side, and the flatter outcome counts. The result depends
+/// on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one to five searches.
 [[nodiscard]] Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
 
 }  // namespace ray
