@@ -130,9 +130,10 @@ Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& r
   const Eigen::Vector3d side = side_of_thick(search, place, rule);
   if (from_behind) surfel = of_side(surfel.normal);
   const Surfel other = of_side(side);
-  const bool other_is_flatter =
-      other.variances[0] * surfel.variances[1] < surfel.variances[0] * other.variances[1];
-  return of_side((other_is_flatter ? other : surfel).normal);
+  constexpr double kClearly = 0.25;
+  const bool first_is_flatter =
+      surfel.variances[0] * other.variances[1] < kClearly * other.variances[0] * surfel.variances[1];
+  return of_side((first_is_flatter ? surfel : other).normal);
 }
 
 }  // namespace ray

@@ -1,0 +1,151 @@
+#include "outside_neighbours.h"
+
+#include "surface_points.h"
+#include "transparent_cubes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ray {
+namespace {
+
+constexpr double kLeastSigma = 0.001;  // m: no lidar is truer
+constexpr std::size_t kFewest = 4;     // neighbours that tell of a surface
+
+/// The plane around a point, through point + height · normal, and how far its points are from it.
+struct NoisyPlane {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // zero: there is none
+  float height = 0.0F;                               // m
+  float variance = 0.0F;                             // m², of a point from the plane, unbiased
+  float reach = 0.0F;                                // m, of its neighbours
+  std::uint32_t points = 0;
+  bool is_flat = false;  // or a line: something to stand in the way of rays, however thin
+};
+
+NoisyPlane noisy_plane(const PointTree& tree, std::size_t place, const Surfel& surfel) {
+  constexpr double kLine = 0.05;  // of the greatest variance: a second one below is noise too
+  constexpr double kFlat = 0.1;
+  NoisyPlane plane;
+  plane.points = surfel.count;
+  plane.reach =
+      std::nextafter(static_cast<float>(std::sqrt(surfel.reach2)), std::numeric_limits<float>::infinity());
+  if (!surfel.is_surface() || surfel.count <= kFewest) return plane;
+  plane.normal = surfel.normal.cast<float>();
+  plane.height = static_cast<float>(surfel.normal.dot(surfel.centroid - tree.point(place)));
+  const bool is_line = surfel.variances[1] < kLine * surfel.variances[2];
+  plane.is_flat = is_line || surfel.variances[0] < kFlat * surfel.variances[1];
+  const double count = surfel.count;
+  plane.variance = static_cast<float>(surfel.variances[is_line ? 1 : 0] * count / (count - 3.0));
+  return plane;
+}
+
+/// What one neighbour's plane says of a point: how far off it is, as a plane without it would see it, scaled
+/// so that the noise of the plane itself does not count; and the variance without it.
+struct Opinion {
+  double residual;  // m
+  double variance;  // m²
+};
+
+Opinion opinion_of(const NoisyPlane& plane, const Eigen::Vector3d& offset) {
+  const double residual = plane.normal.cast<double>().dot(offset) - static_cast<double>(plane.height);
+  const double count = plane.points;
+  const double reach = plane.reach;
+  const double distance2 = offset.squaredNorm();
+  const bool includes_it = distance2 <= reach * reach;
+  // Of an even disc of points, a coordinate has a quarter of the squared radius for a variance.
+  const double lateral2 = std::max(distance2 - residual * residual, 0.0);
+  const double leverage = (1.0 + 4.0 * lateral2 / (reach * reach)) / count;
+  if (!includes_it) return {residual / std::sqrt(1.0 + leverage), plane.variance};
+  const double rest = std::max(1.0 - leverage, 0.3);
+  const double freedom = count - 3.0;
+  const double variance = (freedom * plane.variance - residual * residual / rest) / (freedom - 1.0);
+  return {residual / std::sqrt(rest), std::max(variance, 0.0)};
+}
+
+template <std::size_t kMost>
+double median(std::array<double, kMost>& values, std::size_t count) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
+  if (count % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+/// Medians, so that neither one noisy neighbour nor the order of them matters.
+bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::size_t place,
+                std::span<const Neighbour> neighbours, double sigmas) {
+  constexpr double kLonely =
+      3.0;  // times as far from the nearest neighbour as the neighbours from their 16th
+  std::array<double, NeighbourSearch::kMost> residuals, variances, reaches;
+  std::size_t count = 0;
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (const Neighbour& neighbour : neighbours) {
+    const NoisyPlane& plane = planes[neighbour.place];
+    nearest2 = std::min(nearest2, neighbour.distance2);
+    if (plane.normal.isZero()) continue;
+    const Opinion opinion = opinion_of(plane, tree.point(place) - tree.point(neighbour.place));
+    residuals[count] = opinion.residual;
+    variances[count] = opinion.variance;
+    reaches[count++] = plane.reach;
+  }
+  if (count == 0) return false;
+  if (std::sqrt(nearest2) > kLonely * median(reaches, count)) return true;
+  // The median of variances from 13 degrees of freedom is 5 % below their mean.
+  constexpr double kMedian = 0.95;
+  const double sigma = std::max(std::sqrt(median(variances, count) / kMedian), kLeastSigma);
+  return std::abs(median(residuals, count)) > sigmas * sigma;
+}
+
+std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoint>&& block, double reach,
+                                           double sigmas, const TransparentCubes& transparent) {
+  const PointTree tree(context, block.records);
+  block.records = {};
+  std::vector<NoisyPlane> planes(tree.size());
+  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    for (std::size_t place = begin; place < end; ++place)
+      planes[place] =
+          noisy_plane(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
+  });
+  std::vector<std::uint8_t> keep(tree.size(), 1);
+  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    for (std::size_t place = begin; place < end; ++place) {
+      const NoisyPlane& plane = planes[place];
+      if (!block.is_own(tree.index(place))) continue;
+      std::uint8_t& kept = keep[tree.index(place)];
+      if (plane.points <= kFewest) {
+        kept = std::isfinite(reach) ? 0 : 1;  // in a cloud of a few rays nobody can tell
+        continue;
+      }
+      const auto neighbours =
+          plane.normal.isZero()
+              ? search.nearest(place, kSurfaceNeighbours, plane.reach)
+              : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+      const bool in_passing = !plane.is_flat && transparent.has(tree.point(place));
+      kept = in_passing || is_outside(tree, planes, place, neighbours, sigmas) ? 0 : 1;
+    }
+  });
+  return keep;
+}
+
+}  // namespace
+
+Denoised outside_neighbours(const Context& context, RaySource& source, RaySink& sink, double sigmas) {
+  const BlockNeeds needs{.bytes_per_record = 90,
+                         .reach = [](const EndSample& sample) { return 2.0 * neighbour_reach(sample); }};
+  const TransparentCubes transparent(context, source);
+  const auto compute = [&](const Context& with, Block<SeenPoint>&& block, double reach) {
+    return outside_of_block(with, std::move(block), reach, sigmas, transparent);
+  };
+  return {.counts =
+              run_blocks<SeenPoint, std::uint8_t>(context, source, sink, needs, seen_point, compute,
+                                                  [](RayCloud& rays, std::span<const std::uint8_t> keep) {
+                                                    std::vector<std::uint8_t> mask(rays.size(), 1);
+                                                    std::size_t next = 0;
+                                                    for (std::size_t i = 0; i < rays.size(); ++i)
+                                                      if (rays.bounded[i] != 0) mask[i] = keep[next++];
+                                                    return mask;
+                                                  })};
+}
+
+}  // namespace ray
