@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ray {
 namespace {
@@ -16,7 +17,9 @@ namespace {
 using CellIndex = std::array<std::int64_t, 3>;
 
 constexpr double kMostCells = 0x1p40;  // from the origin: there a cell is still divided into 2^13
-constexpr int kReach = 2;              // cells on each side that may hold a point within the distance
+constexpr int kBlockBits = 2;          // a block has 4 by 4 by 4 cells
+constexpr std::int64_t kInBlock = (1 << kBlockBits) - 1;
+constexpr int kReach = 2;  // cells on each side that may hold a point within the distance
 constexpr std::size_t kWays = 2 * kReach + 1;
 constexpr std::size_t kHashedAtOnce = 64;  // points whose buckets are fetched together
 constexpr std::size_t kAhead = 24;         // places from which a point is fetched
@@ -45,53 +48,73 @@ class CellBuckets {
       : points_(points),
         cells_per_metre_(std::sqrt(3.0) / (0.999 * distance)),
         distance2_(distance * distance),
-        bucket_mask_(std::bit_ceil(std::max<std::size_t>(points.size(), 1)) - 1),
+        bucket_mask_(std::bit_floor(points.size()) - 1),
         ends_(bucket_mask_ + 2),
         order_(points.size()) {
     // Counts go one bucket further, become beginnings as they are summed, and ends as the buckets are filled.
-    each_bucket(context, [&](std::size_t, std::size_t bucket) {
-      std::atomic_ref(ends_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
+    each_bucket(context, [&](std::size_t, const Bucket& bucket) {
+      std::atomic_ref(ends_[bucket.number + 1]).fetch_add(1, std::memory_order_relaxed);
     });
     std::uint32_t sum = 0;
     for (std::uint32_t& end : ends_)
       end = std::exchange(sum, sum + end);
-    each_bucket(context, [&](std::size_t i, std::size_t bucket) {
-      const auto place = std::atomic_ref(ends_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
-      order_[place] = static_cast<std::uint32_t>(i);
+    each_bucket(context, [&](std::size_t i, const Bucket& bucket) {
+      const auto place = std::atomic_ref(ends_[bucket.number + 1]).fetch_add(1, std::memory_order_relaxed);
+      order_[place] = {static_cast<std::uint32_t>(i), bucket.mark};
     });
   }
 
   /// The point at a place in the order of the buckets.
   [[nodiscard]] std::uint32_t at(std::size_t place) const {
-    if (place + kAhead < order_.size()) __builtin_prefetch(&points_[order_[place + kAhead]]);
-    return order_[place];
+    if (place + kAhead < order_.size()) __builtin_prefetch(&points_[order_[place + kAhead].point]);
+    return order_[place].point;
   }
 
   /// Whether at least `wanted` others are near the point.
   [[nodiscard]] bool has_near(std::uint32_t i, std::uint64_t wanted) const {
-    const Eigen::Vector3d scaled = points_[i] * cells_per_metre_;
     const CellIndex cell = cell_of(points_[i]);
     std::uint64_t found = near_in(cell, bucket_of(cell), i, wanted);
     if (found >= wanted) return true;
 
-    // What each axis adds to the squared distance of a cell, in cells; less a little for rounding.
-    std::array<std::array<double, kWays>, 3> gap2{};
+    // For each step along an axis: what it adds to the squared distance of a cell (in cells), whether it
+    // leads into the other of the two blocks that it may reach, and its part of the bucket.
+    struct Step {
+      double gap2 = 0.0;
+      std::uint8_t block = 0;
+      std::uint8_t part = 0;
+    };
+    std::array<std::array<Step, kWays>, 3> steps{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double within = scaled[static_cast<Eigen::Index>(axis)] - static_cast<double>(cell[axis]);
+      const double within =
+          points_[i][static_cast<Eigen::Index>(axis)] * cells_per_metre_ - static_cast<double>(cell[axis]);
+      const std::int64_t first_block = (cell[axis] - kReach) >> kBlockBits;
       for (int way = -kReach; way <= kReach; ++way) {
         const double gap = way > 0 ? way - within : way < 0 ? within - way - 1.0 : 0.0;
-        gap2[axis][static_cast<std::size_t>(way + kReach)] = gap > 0.0 ? gap * gap : 0.0;
+        const std::int64_t other = cell[axis] + way;
+        steps[axis][static_cast<std::size_t>(way + kReach)] = {
+            gap > 0.0 ? gap * gap : 0.0,
+            static_cast<std::uint8_t>(((other >> kBlockBits) - first_block) << (2 - axis)),
+            static_cast<std::uint8_t>((other & kInBlock) << (kBlockBits * (2 - axis)))};
       }
     }
-    constexpr double kNear2 = 3.0 * 1.01;
+    std::array<std::uint64_t, 8> hashes{};
+    for (std::size_t b = 0; b < 8; ++b) {
+      const auto block = [&](std::size_t axis) {
+        return ((cell[axis] - kReach) >> kBlockBits) + static_cast<std::int64_t>((b >> (2 - axis)) & 1);
+      };
+      hashes[b] = block_hash(block(0), block(1), block(2));
+    }
+    constexpr double kNear2 = 3.0 * 1.01;  // a little more than the distance, for rounding
     static const auto kAround = cells_around();
     for (const auto& [x, y, z] : kAround) {
-      const auto part = [&](std::size_t axis, int way) {
-        return gap2[axis][static_cast<std::size_t>(way + kReach)];
+      const auto step = [&](std::size_t axis, int way) -> const Step& {
+        return steps[axis][static_cast<std::size_t>(way + kReach)];
       };
-      if (part(0, x) + part(1, y) + part(2, z) > kNear2) continue;
-      const CellIndex other{cell[0] + x, cell[1] + y, cell[2] + z};
-      found += near_in(other, bucket_of(other), i, wanted - found);
+      const Step &along_x = step(0, x), &along_y = step(1, y), &along_z = step(2, z);
+      if (along_x.gap2 + along_y.gap2 + along_z.gap2 > kNear2) continue;
+      const Bucket bucket = bucket_in(hashes[along_x.block | along_y.block | along_z.block],
+                                      along_x.part | along_y.part | along_z.part);
+      found += near_in({cell[0] + x, cell[1] + y, cell[2] + z}, bucket, i, wanted - found);
       if (found >= wanted) return true;
     }
     return false;
@@ -109,27 +132,46 @@ class CellBuckets {
             rounded_down(point.z() * cells_per_metre_)};
   }
 
-  /// Cells of a block of 4 by 4 by 4 lie beside each other.
-  [[nodiscard]] std::size_t bucket_of(const CellIndex& cell) const {
-    const auto block = [&](std::size_t axis) { return static_cast<std::uint64_t>(cell[axis] >> 2); };
-    const auto part = [&](std::size_t axis) { return static_cast<std::uint64_t>(cell[axis] & 3); };
-    std::uint64_t hash =
-        block(0) * 0x9e3779b97f4a7c15u + block(1) * 0xc2b2ae3d27d4eb4fu + block(2) * 0x165667b19e3779f9u;
-    hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9u;
-    return static_cast<std::size_t>(((hash >> 32) << 6) | part(0) << 4 | part(1) << 2 | part(2)) &
-           bucket_mask_;
+  /// Where a cell is, and what its block is marked with there.
+  struct Bucket {
+    std::size_t number = 0;
+    std::uint32_t mark = 0;
+  };
+  struct Entry {
+    std::uint32_t point = 0;
+    std::uint32_t mark = 0;
+  };
+
+  static std::uint64_t block_hash(std::int64_t x, std::int64_t y, std::int64_t z) {
+    const std::uint64_t sum = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u +
+                              static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu +
+                              static_cast<std::uint64_t>(z) * 0x165667b19e3779f9u;
+    return (sum ^ (sum >> 29)) * 0xbf58476d1ce4e5b9u;
+  }
+
+  /// Cells of a block lie beside each other.
+  [[nodiscard]] Bucket bucket_in(std::uint64_t hash, std::uint64_t part) const {
+    return {static_cast<std::size_t>(((hash >> 32) << (3 * kBlockBits)) | part) & bucket_mask_,
+            static_cast<std::uint32_t>(hash)};
+  }
+
+  [[nodiscard]] Bucket bucket_of(const CellIndex& cell) const {
+    const auto block = [&](std::size_t axis) { return cell[axis] >> kBlockBits; };
+    const auto part = [&](std::size_t axis) { return static_cast<std::uint64_t>(cell[axis] & kInBlock); };
+    return bucket_in(block_hash(block(0), block(1), block(2)),
+                     part(0) << (2 * kBlockBits) | part(1) << kBlockBits | part(2));
   }
 
   /// Calls `body(point, bucket)` for all points, at the same time.
   template <class Body>
   void each_bucket(const Context& context, const Body& body) {
     parallel_for(context, points_.size(), kPlaces, [&](std::size_t begin, std::size_t end) {
-      std::array<std::size_t, kHashedAtOnce> buckets{};
+      std::array<Bucket, kHashedAtOnce> buckets{};
       for (; begin < end; begin += kHashedAtOnce) {
         const std::size_t count = std::min(kHashedAtOnce, end - begin);
         for (std::size_t k = 0; k < count; ++k) {
           buckets[k] = bucket_of(cell_of(checked(points_[begin + k])));
-          __builtin_prefetch(&ends_[buckets[k] + 1], 1);
+          __builtin_prefetch(&ends_[buckets[k].number + 1], 1);
         }
         for (std::size_t k = 0; k < count; ++k)
           body(begin + k, buckets[k]);
@@ -147,14 +189,16 @@ class CellBuckets {
   }
 
   /// How many other points of the cell are near point i; no more than wanted.
-  [[nodiscard]] std::uint64_t near_in(const CellIndex& cell, std::size_t bucket, std::uint32_t i,
+  [[nodiscard]] std::uint64_t near_in(const CellIndex& cell, const Bucket& bucket, std::uint32_t i,
                                       std::uint64_t wanted) const {
     const Eigen::Vector3d& point = points_[i];
     std::uint64_t found = 0;
-    for (std::uint32_t place = ends_[bucket]; place < ends_[bucket + 1] && found < wanted; ++place) {
-      const Eigen::Vector3d& other = points_[order_[place]];
+    for (std::uint32_t place = ends_[bucket.number]; place < ends_[bucket.number + 1] && found < wanted;
+         ++place) {
+      if (order_[place].mark != bucket.mark || order_[place].point == i) continue;
+      const Eigen::Vector3d& other = points_[order_[place].point];
       const double dx = other.x() - point.x(), dy = other.y() - point.y(), dz = other.z() - point.z();
-      if (dx * dx + dy * dy + dz * dz <= distance2_ && order_[place] != i && cell_of(other) == cell) ++found;
+      if (dx * dx + dy * dy + dz * dz <= distance2_ && cell_of(other) == cell) ++found;
     }
     return found;
   }
@@ -163,8 +207,8 @@ class CellBuckets {
   double cells_per_metre_;
   double distance2_;
   std::size_t bucket_mask_;
-  std::vector<std::uint32_t> ends_;   ///< of bucket b at b + 1
-  std::vector<std::uint32_t> order_;  ///< the points, bucket after bucket
+  std::vector<std::uint32_t> ends_;  ///< of bucket b at b + 1
+  std::vector<Entry> order_;         ///< the points, bucket after bucket
 };
 
 }  // namespace

@@ -5,7 +5,8 @@
 namespace ray::tools {
 
 std::span<const Step* const> all_steps() {
-  static const std::array kSteps{&kDecimateStep, &kSplitStep, &kTranslateStep, &kRotateStep, &kColourStep};
+  static const std::array kSteps{&kDecimateStep,  &kDenoiseStep, &kSplitStep,
+                                 &kTranslateStep, &kRotateStep,  &kColourStep};
   return kSteps;
 }
 
