@@ -10,8 +10,9 @@
 namespace ray {
 namespace {
 
-constexpr std::size_t kBeside = 8;  // neighbours that are compared
-constexpr double kStill = 0.1;      // m; a sensor that moves less saw all from one place
+constexpr std::size_t kBeside = 8;    // neighbours that are compared
+constexpr double kStill = 0.1;        // m; a sensor that moves less saw all from one place
+constexpr double kLeastSlant = 0.05;  // rad
 constexpr std::size_t kBeamsAtOnce = 1 << 12;
 
 /// Where the neighbours are looked for: directions from the place of the sensor, or the ends themselves.
@@ -27,17 +28,26 @@ std::vector<SeenPoint> places_of(const Beams& beams) {
   return places;
 }
 
-/// Whether the end lies in the plane of the others: a slanted surface.
-bool in_plane(const std::vector<Eigen::Vector3d>& others, const Eigen::Vector3d& end, double distance) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+/// Whether the end of a beam lies in the plane of the others, or on their line: a slanted surface. A plane or
+/// line along the beam is none: it goes from one surface to the other.
+bool on_slant(const std::vector<Eigen::Vector3d>& others, const Eigen::Vector3d& start,
+              const Eigen::Vector3d& end, double distance) {
+  const auto count = static_cast<double>(others.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // from the end
   for (const Eigen::Vector3d& other : others)
-    mean += (other - end) / static_cast<double>(others.size());
+    mean += (other - end) / count;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& other : others)
-    spread += (other - end - mean) * (other - end - mean).transpose() / static_cast<double>(others.size());
+    spread += (other - end - mean) * (other - end - mean).transpose() / count;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  return std::sqrt(std::max(axes.eigenvalues()[0], 0.0)) <= distance &&
-         std::abs(axes.eigenvectors().col(0).dot(mean)) <= distance;
+  const Eigen::Vector3d beam = (end - start).normalized();
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0), along = axes.eigenvectors().col(2);
+  const double thin2 = distance * distance;
+  const bool plane = axes.eigenvalues()[0] <= thin2 && std::abs(normal.dot(mean)) <= distance &&
+                     std::abs(normal.dot(beam)) >= kLeastSlant;
+  const bool line = axes.eigenvalues()[1] <= thin2 && along.cross(mean).norm() <= distance &&
+                    along.cross(beam).norm() >= kLeastSlant;
+  return plane || line;
 }
 
 bool between_others(const std::vector<Eigen::Vector3d>& others, const Eigen::Vector3d& start,
@@ -49,7 +59,7 @@ bool between_others(const std::vector<Eigen::Vector3d>& others, const Eigen::Vec
     if (std::abs(difference) <= distance) return false;
     (difference < 0.0 ? nearer : further) = true;
   }
-  return nearer && further && !in_plane(others, end, distance);
+  return nearer && further && !on_slant(others, start, end, distance);
 }
 
 }  // namespace

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace ray {
 namespace {
 
 constexpr std::size_t kWidest = 160;    // records in which the next beam of a line is looked for
 constexpr std::size_t kSampled = 4000;  // beams from which the step is learned
-constexpr std::size_t kFewest = 3;      // of those with a neighbour; fewer tell nothing
 constexpr double kLargestStep = 0.05;   // rad; beams further apart are no line
 constexpr double kSteps = 2.5;          // further than so many steps is not next to each other
 constexpr double kSamePulse = 1e-6;     // rad; returns of one pulse
@@ -40,26 +40,38 @@ T quantile(std::vector<T>& values, double fraction) {
   return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
+/// Whether the beams before and after are on opposite sides of beam i and about as far from it.
+bool is_line(const Beams& beams, std::size_t i, const Next& before, const Next& after) {
+  if (before.beam == ScanLines::kNone || after.beam == ScanLines::kNone) return false;
+  const auto direction = [&](std::size_t beam) {
+    return Eigen::Vector3d((beams.ends[beam] - beams.starts[i]).normalized());
+  };
+  const Eigen::Vector3d here = direction(i);
+  const Eigen::Vector3d back = direction(before.beam) - here, forth = direction(after.beam) - here;
+  const auto [shorter, longer] = std::minmax(before.tangent, after.tangent);
+  return longer <= kSteps * shorter && back.dot(forth) < -0.5 * back.norm() * forth.norm();
+}
+
 /// Learns the step and the window from beams all over the cloud.
 ScanLines learn_lines(const Beams& beams) {
   const std::size_t stride = std::max<std::size_t>(beams.size() / kSampled, 1);
   std::vector<double> tangents;
-  std::vector<std::size_t> offsets;
-  std::vector<Next> nexts;
+  std::vector<std::pair<Next, std::size_t>> nexts;
+  std::size_t on_lines = 0;
   for (std::size_t i = 0; i < beams.size(); i += stride) {
     const Next next = nearest_in_angle(beams, i, kWidest, 1);
     if (next.beam == ScanLines::kNone) continue;
+    if (is_line(beams, i, nearest_in_angle(beams, i, kWidest, -1), next)) ++on_lines;
     tangents.push_back(next.tangent);
-    offsets.push_back(next.beam - i);
-    nexts.push_back(next);
+    nexts.emplace_back(next, next.beam - i);
   }
   ScanLines lines;
-  if (tangents.size() < kFewest) return lines;
+  if (2 * on_lines < tangents.size() || on_lines == 0) return lines;
   lines.step = quantile(tangents, 0.5);
-  std::vector<std::size_t> good;
-  for (std::size_t k = 0; k < nexts.size(); ++k)
-    if (nexts[k].tangent <= kSteps * lines.step) good.push_back(offsets[k]);
-  lines.window = quantile(good, 0.95);
+  std::vector<std::size_t> offsets;
+  for (const auto& [next, offset] : nexts)
+    if (next.tangent <= kSteps * lines.step) offsets.push_back(offset);
+  lines.window = quantile(offsets, 0.95);
   lines.in_scan_order = lines.step <= kLargestStep;
   return lines;
 }
