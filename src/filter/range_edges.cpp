@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace ray {
 namespace {
 
+constexpr std::size_t kRecords = 160;   // before and after, in which beams of other lines are looked for
+constexpr double kAcross = 0.7;         // cosine of the most by which they may lie aslant
 constexpr double kFurthestLine = 0.08;  // tangent of the angle to a line beside
 constexpr double kSlope = 0.5;          // by how much of itself a slope may change from beam to beam
 
@@ -30,8 +31,11 @@ class EdgeJudge {
     const Eigen::Vector3d here = direction(i, i);
     if ((direction(i, before) - here).dot(direction(i, after) - here) >= 0.0) return false;  // a turn
     if (goes_on(i, before, lines_.before) || goes_on(i, after, lines_.after)) return false;
-    const bool between = (range < range_before) != (range < range_after);
-    return between || between_lines(i, range, here, along);
+    const auto [one, other] = beside_line(i, here, along);
+    // What another line met too is a surface, however narrow on this one.
+    if (std::abs(range - one) <= distance_ || std::abs(range - other) <= distance_) return false;
+    const bool on_line = (range < range_before) != (range < range_after);
+    return on_line || (range < one && range > other) || (range > one && range < other);
   }
 
  private:
@@ -57,29 +61,25 @@ class EdgeJudge {
            std::max(kSlope * std::abs(expected), distance_ / (range * first_range));
   }
 
-  /// Whether the end is between the nearest of the beams on either side of its line.
-  [[nodiscard]] bool between_lines(std::size_t i, double range, const Eigen::Vector3d& here,
-                                   const Eigen::Vector3d& along) const {
+  /// The ranges of the nearest beams on either side of the line; NaN where there is none.
+  [[nodiscard]] std::array<double, 2> beside_line(std::size_t i, const Eigen::Vector3d& here,
+                                                  const Eigen::Vector3d& along) const {
     const Eigen::Vector3d across = here.cross(along).normalized();
-    const double turn = along.norm() / 2.0;
-    struct Side {
-      double angle = kFurthestLine;
-      double range = std::numeric_limits<double>::quiet_NaN();
-    };
-    std::array<Side, 2> sides;
-    const std::size_t first = i - std::min(i, lines_.window);
-    const std::size_t last = std::min(i + lines_.window, beams_.size() - 1);
+    const double least = along.norm() / 4.0;  // half a step: less is on the line
+    std::array<double, 2> nearest{kFurthestLine, kFurthestLine};
+    std::array<double, 2> ranges{std::nan(""), std::nan("")};
+    const std::size_t first = i - std::min(i, kRecords);
+    const std::size_t last = std::min(i + kRecords, beams_.size() - 1);
     for (std::size_t j = first; j <= last; ++j) {
       const Eigen::Vector3d offset = direction(i, j) - here;
       const double up = offset.dot(across);
-      if (offset.norm() > kFurthestLine || std::abs(up) < std::max(0.9 * offset.norm(), 0.5 * turn)) continue;
-      Side& side = sides[up > 0.0 ? 1 : 0];
-      if (std::abs(up) < side.angle) side = {std::abs(up), range_of(i, j)};
+      const std::size_t side = up > 0.0 ? 1 : 0;
+      const double angle = offset.norm();
+      if (angle >= nearest[side] || std::abs(up) < std::max(kAcross * angle, least)) continue;
+      nearest[side] = angle;
+      ranges[side] = range_of(i, static_cast<std::uint32_t>(j));
     }
-    const double nearer = std::min(sides[0].range, sides[1].range);
-    const double further = std::max(sides[0].range, sides[1].range);
-    return !std::isnan(sides[0].range) && !std::isnan(sides[1].range) && nearer < range - distance_ &&
-           further > range + distance_;
+    return ranges;
   }
 
   const Beams& beams_;
