@@ -9,8 +9,10 @@
 namespace ray {
 namespace {
 
-constexpr std::size_t kRecords = 160;   // before and after, in which beams of other lines are looked for
-constexpr double kAcross = 0.7;         // cosine of the most by which they may lie aslant
+constexpr double kSurfaceSlope =
+    0.03;                              // by how much of itself a range changes from beam to beam on a surface
+constexpr std::size_t kRecords = 160;  // before and after, in which beams of other lines are looked for
+constexpr double kAcross = 0.7;        // cosine of the most by which they may lie aslant
 constexpr double kFurthestLine = 0.08;  // tangent of the angle to a line beside
 constexpr double kSlope = 0.5;          // by how much of itself a slope may change from beam to beam
 
@@ -31,6 +33,7 @@ class EdgeJudge {
     const Eigen::Vector3d here = direction(i, i);
     if ((direction(i, before) - here).dot(direction(i, after) - here) >= 0.0) return false;  // a turn
     if (goes_on(i, before, lines_.before) || goes_on(i, after, lines_.after)) return false;
+    if (!on_surface(before, lines_.before) || !on_surface(after, lines_.after)) return false;
     const auto [one, other] = beside_line(i, here, along);
     // What another line met too is a surface, however narrow on this one.
     if (std::abs(range - one) <= distance_ || std::abs(range - other) <= distance_) return false;
@@ -59,6 +62,15 @@ class EdgeJudge {
     const double expected = (1.0 / first_range - 1.0 / range_of(i, second)) * step / step_before;
     return std::abs(change - expected) <=
            std::max(kSlope * std::abs(expected), distance_ / (range * first_range));
+  }
+
+  /// Whether the beam and the next one away from the edge met one surface, as far as their ranges tell: where
+  /// ranges jump from beam to beam, as in leaves, nothing is known of what is between.
+  [[nodiscard]] bool on_surface(std::uint32_t beam, const std::vector<std::uint32_t>& further) const {
+    const std::uint32_t second = further[beam];
+    if (second == ScanLines::kNone) return false;
+    const double range = range_of(beam, beam), change = std::abs(range_of(beam, second) - range);
+    return change <= std::max(distance_, kSurfaceSlope * range);
   }
 
   /// The ranges of the nearest beams on either side of the line; NaN where there is none.
