@@ -41,6 +41,7 @@ void each_bounded(const Context& context, RaySource& source, const Add& add) {
 
 Denoised far_ends(const Context& context, RaySource& source, RaySink& sink, const FarFromOthers& rule) {
   std::vector<Eigen::Vector3d> ends;
+  ends.reserve(source.info().ray_count.value_or(0));
   each_bounded(context, source, [&](const RayCloud& rays, std::size_t i) { ends.push_back(rays.ends[i]); });
   const std::vector<std::uint8_t> noise =
       far_from_others(context, ends, rule.distance.value, rule.min_neighbours);

@@ -17,7 +17,7 @@ namespace {
 using CellIndex = std::array<std::int64_t, 3>;
 
 constexpr double kMostCells = 0x1p40;  // from the origin: there a cell is still divided into 2^13
-constexpr int kBlockBits = 2;          // a block has 4 by 4 by 4 cells
+constexpr int kBlockBits = 4;          // a block has 16 by 16 by 16 cells
 constexpr std::int64_t kInBlock = (1 << kBlockBits) - 1;
 constexpr int kReach = 2;  // cells on each side that may hold a point within the distance
 constexpr std::size_t kWays = 2 * kReach + 1;
@@ -81,7 +81,7 @@ class CellBuckets {
     struct Step {
       double gap2 = 0.0;
       std::uint8_t block = 0;
-      std::uint8_t part = 0;
+      std::uint32_t part = 0;
     };
     std::array<std::array<Step, kWays>, 3> steps{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -94,7 +94,7 @@ class CellBuckets {
         steps[axis][static_cast<std::size_t>(way + kReach)] = {
             gap > 0.0 ? gap * gap : 0.0,
             static_cast<std::uint8_t>(((other >> kBlockBits) - first_block) << (2 - axis)),
-            static_cast<std::uint8_t>((other & kInBlock) << (kBlockBits * (2 - axis)))};
+            static_cast<std::uint32_t>((other & kInBlock) << (kBlockBits * (2 - axis)))};
       }
     }
     std::array<std::uint64_t, 8> hashes{};

@@ -45,8 +45,8 @@ thinned; where a cloud does not tell, neighbours in space are compared, which fi
                 view_option()},
     .writes = "CLOUD_denoised.ply",
     .memory =
-        R"(38 bytes for each ray with a distance, 64 with `range`, 120 where neighbours in space are compared; less
-than 200 MB besides.)",
+        R"(About 38 bytes for each ray with a distance, 90 with `range`, 130 where neighbours in space are
+compared; less than 200 MB besides.)",
     .see_also = {"raydecimate", "raysplit", "rayinfo"}};
 
 Noise noise_of(const Match& match) {

@@ -107,8 +107,6 @@ Score judged(const RayCloud& cloud, unsigned threads = 2, std::size_t chunk = 10
   };
   score.recall = 1.0 - count(score.rest, 100) / count(cloud, 100);
   score.lost = 1.0 - count(score.rest, 200) / count(cloud, 200);
-  std::printf("%zu rays, %.0f mixed: recall %.3f, lost %.5f, in order %d\n", cloud.size(), count(cloud, 100),
-              score.recall, score.lost, done.in_scan_order);
   return score;
 }
 
