@@ -112,6 +112,8 @@ raydecimate $1 10 rays
 raydecimate $1 10 cm 3 points
 raydecimate $1 10 cm/ray
 raydecimate $1 3 cm/m
+raydenoise $1 10 cm
+raydenoise $1 range 10 cm
 rayrestore $1 10 cm $1
 raysplit $1 plane 0,0,1
 raysplit $1 time 3 %

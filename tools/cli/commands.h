@@ -21,6 +21,7 @@ inline constexpr std::array kCommands{
     ListedCommand{"rayrotate", "rotate a ray cloud about the origin, in place"},
     ListedCommand{"raydecimate", "thin a ray cloud"},
     ListedCommand{"rayrestore", "apply the edits of a thinned ray cloud to the full one"},
+    ListedCommand{"raydenoise", "take noise out of a ray cloud"},
     ListedCommand{"raycolour", "colour a ray cloud"},
     ListedCommand{"raypipe", "run several commands as one, without files between them"},
     ListedCommand{"raysmooth", "move end points onto the surface they are samples of"},

@@ -9,6 +9,7 @@ namespace ray::tools {
 
 extern const Step kColourStep;
 extern const Step kDecimateStep;
+extern const Step kDenoiseStep;
 extern const Step kRotateStep;
 extern const Step kSmoothStep;
 extern const Step kSplitStep;
