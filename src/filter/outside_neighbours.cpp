@@ -12,6 +12,8 @@ namespace ray {
 namespace {
 
 constexpr double kLeastSigma = 0.001;  // m: no lidar is truer
+constexpr double kLineLike = 0.05;     // of the greatest variance: a second one below is noise too
+constexpr double kAcrossRay = 0.85;    // most cosine between a line and the ray that ends on it
 constexpr std::size_t kFewest = 4;     // neighbours that tell of a surface
 
 /// The plane around a point, through point + height · normal, and how far its points are from it.
@@ -25,7 +27,6 @@ struct NoisyPlane {
 };
 
 NoisyPlane noisy_plane(const PointTree& tree, std::size_t place, const Surfel& surfel) {
-  constexpr double kLine = 0.05;  // of the greatest variance: a second one below is noise too
   constexpr double kFlat = 0.1;
   NoisyPlane plane;
   plane.points = surfel.count;
@@ -34,8 +35,12 @@ NoisyPlane noisy_plane(const PointTree& tree, std::size_t place, const Surfel& s
   if (!surfel.is_surface() || surfel.count <= kFewest) return plane;
   plane.normal = surfel.normal.cast<float>();
   plane.height = static_cast<float>(surfel.normal.dot(surfel.centroid - tree.point(place)));
-  const bool is_line = surfel.variances[1] < kLine * surfel.variances[2];
-  plane.is_flat = is_line || surfel.variances[0] < kFlat * surfel.variances[1];
+  const bool is_line = surfel.variances[1] < kLineLike * surfel.variances[2];
+  // But not if it lies along the rays: that is how the ends of beams which met two surfaces lie.
+  const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place));
+  plane.is_flat = is_line ? std::abs(surfel.axis.dot(ray)) < kAcrossRay
+                          : surfel.variances[0] < kFlat * surfel.variances[1] &&
+                                surfel.normal.dot(ray) > 1.0 - kAcrossRay;
   const double count = surfel.count;
   plane.variance = static_cast<float>(surfel.variances[is_line ? 1 : 0] * count / (count - 3.0));
   return plane;
@@ -97,6 +102,23 @@ bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::
   return std::abs(median(residuals, count)) > sigmas * sigma;
 }
 
+/// A wire has too few points for sixteen of them to look like one.
+bool is_on_wire(NeighbourSearch& search, std::size_t place, double reach) {
+  constexpr SurfelRule kFew{.neighbours = 6, .by_side = false};
+  SurfelRule rule = kFew;
+  rule.reach = reach;
+  const Surfel surfel = surfel_at(search, place, rule);
+  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place));
+  return surfel.variances[1] < kLineLike * surfel.variances[2] && std::abs(surfel.axis.dot(ray)) < kAcrossRay;
+}
+
+/// Student's quantile for a normal one (Cornish and Fisher 1938): the variances of sixteen neighbours, who
+/// share most of theirs, amount to some forty degrees of freedom.
+double for_estimated_sigma(double sigmas) {
+  constexpr double kFreedom = 40.0;
+  return sigmas + (sigmas * sigmas * sigmas + sigmas) / (4.0 * kFreedom);
+}
+
 std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoint>&& block, double reach,
                                            double sigmas, const TransparentCubes& transparent) {
   const PointTree tree(context, block.records);
@@ -108,6 +130,7 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
           noisy_plane(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
   });
   std::vector<std::uint8_t> keep(tree.size(), 1);
+  const double most = for_estimated_sigma(sigmas);
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {
       const NoisyPlane& plane = planes[place];
@@ -121,8 +144,9 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
           plane.normal.isZero()
               ? search.nearest(place, kSurfaceNeighbours, plane.reach)
               : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+      const bool outside = is_outside(tree, planes, place, neighbours, most);
       const bool in_passing = !plane.is_flat && transparent.has(tree.point(place));
-      kept = in_passing || is_outside(tree, planes, place, neighbours, sigmas) ? 0 : 1;
+      if (outside || in_passing) kept = is_on_wire(search, place, reach / 2.0) ? 1 : 0;
     }
   });
   return keep;

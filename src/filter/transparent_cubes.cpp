@@ -14,7 +14,7 @@ namespace ray {
 namespace {
 
 constexpr std::uint64_t kLooks = 500000;
-constexpr double kSpacings = 6.0;  // the width of a cube
+constexpr std::array kSpacings{6.0, 24.0};  // the widths of the cubes
 
 /// The cubes from that of `start` to that of `end`, that one excluded, face by face (Amanatides and Woo
 /// 1987).
@@ -50,10 +50,30 @@ void each_cube_before_end(const Eigen::Vector3d& start, const Eigen::Vector3d& e
   }
 }
 
+/// Counts a ray in the cubes with ends in them that it passes.
+template <class Counts>
+void count_pass(const VoxelTable<Counts>& cubes, double width, const Eigen::Vector3d& start,
+                const Eigen::Vector3d& end) {
+  VoxelIndex number;
+  const KeyTable<Counts>* block = nullptr;
+  bool known = false;
+  each_cube_before_end(start, end, width, [&](const VoxelIndex& cube) {
+    const VoxelPlace place = voxel_place(cube);
+    if (!known || place.block != number) {
+      block = cubes.find_block(place.block);
+      number = place.block;
+      known = true;
+    }
+    const Counts* counts = block == nullptr ? nullptr : block->find(place.key);
+    // Adding is all that happens meanwhile, and whole numbers add up the same in any order.
+    if (counts != nullptr)
+      std::atomic_ref(const_cast<Counts*>(counts)->passes).fetch_add(1, std::memory_order_relaxed);
+  });
+}
+
 }  // namespace
 
-TransparentCubes::TransparentCubes(const Context& context, RaySource& source)
-    : cubes_(std::make_unique<VoxelTable<Counts>>()) {
+TransparentCubes::TransparentCubes(const Context& context, RaySource& source) {
   blocks::EndSampler sampler;
   const StreamCounts counts = stream(
       context, source, nullptr, [](const RayCloud&) { return Nothing{}; },
@@ -62,8 +82,10 @@ TransparentCubes::TransparentCubes(const Context& context, RaySource& source)
           if (rays.bounded[i] != 0) sampler.add(rays.ends[i]);
       });
   source.rewind();
-  width_ = {kSpacings * estimate_spacing(sampler.sample().ends, sampler.sample().bounded).value};
-  if (!(width_.value > 0.0)) return;
+  const double spacing = estimate_spacing(sampler.sample().ends, sampler.sample().bounded).value;
+  if (!(spacing > 0.0)) return;
+  for (const double spacings : kSpacings)
+    grids_.push_back({.width = {spacings * spacing}});
   stride_ = counts.rays_in / kLooks + 1;
   count_hits(context, source);
   source.rewind();
@@ -76,63 +98,49 @@ void TransparentCubes::count_hits(const Context& context, RaySource& source) {
       context, source, nullptr,
       [&](RayCloud& rays) {
         rays.select(rays.bounded);
-        return voxel_keys(rays.ends, width_);
+        std::vector<VoxelKeys> keys;
+        for (const Grid& grid : grids_)
+          keys.push_back(voxel_keys(rays.ends, grid.width));
+        return keys;
       },
-      [&](const RayCloud&, const VoxelKeys& keys) {
-        cubes_->add(keys, {}, [](std::size_t, Counts& counts, bool) { ++counts.hits; });
+      [&](const RayCloud&, const std::vector<VoxelKeys>& keys) {
+        for (std::size_t i = 0; i < grids_.size(); ++i)
+          grids_[i].cubes->add(keys[i], {}, [](std::size_t, Counts& counts, bool) { ++counts.hits; });
       });
 }
 
 void TransparentCubes::count_passes(const Context& context, RaySource& source) {
   // Which rays are looked at depends on their place in the cloud, which only the ordered part knows.
   std::uint64_t seen = 0;
-  struct Looks {
-    std::vector<Eigen::Vector3d> starts, ends;
-  };
-  Looks looks;
+  std::vector<Eigen::Vector3d> starts, ends;
   stream(
       context, source, nullptr, [](const RayCloud&) { return Nothing{}; },
       [&](const RayCloud& rays, Nothing) {
         for (std::size_t i = 0; i < rays.size(); ++i, ++seen) {
           if (seen % stride_ != 0) continue;
-          looks.starts.push_back(rays.starts[i]);
-          looks.ends.push_back(rays.ends[i]);
+          starts.push_back(rays.starts[i]);
+          ends.push_back(rays.ends[i]);
         }
       });
-  parallel_for(context, looks.ends.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, ends.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      pass(looks.starts[i], looks.ends[i]);
-  });
-}
-
-void TransparentCubes::pass(const Eigen::Vector3d& start, const Eigen::Vector3d& end) {
-  VoxelIndex number;
-  const KeyTable<Counts>* block = nullptr;
-  bool known = false;
-  each_cube_before_end(start, end, width_.value, [&](const VoxelIndex& cube) {
-    const VoxelPlace place = voxel_place(cube);
-    if (!known || place.block != number) {
-      block = cubes_->find_block(place.block);
-      number = place.block;
-      known = true;
-    }
-    const Counts* counts = block == nullptr ? nullptr : block->find(place.key);
-    // Adding is all that happens meanwhile, and whole numbers add up the same in any order.
-    if (counts != nullptr)
-      std::atomic_ref(const_cast<Counts*>(counts)->passes).fetch_add(1, std::memory_order_relaxed);
+      for (const Grid& grid : grids_)
+        count_pass(*grid.cubes, grid.width.value, starts[i], ends[i]);
   });
 }
 
 bool TransparentCubes::has(const Eigen::Vector3d& point) const {
-  constexpr double kOpacity = 0.01;
+  constexpr double kOpacity = 0.02;
   constexpr std::uint32_t kFewest = 8;  // looks
-  if (!(width_.value > 0.0)) return false;
-  const VoxelPlace place = voxel_place(voxel_index(point, width_));
-  const KeyTable<Counts>* block = cubes_->find_block(place.block);
-  const Counts* counts = block == nullptr ? nullptr : block->find(place.key);
-  if (counts == nullptr || counts->passes < kFewest) return false;
-  const double passes = static_cast<double>(counts->passes) * static_cast<double>(stride_);
-  return counts->hits < kOpacity * (counts->hits + passes);
+  for (const Grid& grid : grids_) {
+    const VoxelPlace place = voxel_place(voxel_index(point, grid.width));
+    const KeyTable<Counts>* block = grid.cubes->find_block(place.block);
+    const Counts* counts = block == nullptr ? nullptr : block->find(place.key);
+    if (counts == nullptr || counts->passes < kFewest) continue;
+    const double passes = static_cast<double>(counts->passes) * static_cast<double>(stride_);
+    if (counts->hits < kOpacity * (counts->hits + passes)) return true;
+  }
+  return false;
 }
 
 }  // namespace ray

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 namespace ray {
 
@@ -26,13 +27,16 @@ class TransparentCubes {
     std::uint32_t hits = 0;
     std::uint32_t passes = 0;  ///< of the rays that were looked at
   };
+  using Table = VoxelTable<Counts>;
+  struct Grid {
+    Metres width;
+    std::unique_ptr<Table> cubes = std::make_unique<Table>();
+  };
   void count_hits(const Context& context, RaySource& source);
   void count_passes(const Context& context, RaySource& source);
-  void pass(const Eigen::Vector3d& start, const Eigen::Vector3d& end);
 
-  Metres width_{};
+  std::vector<Grid> grids_;
   std::uint64_t stride_ = 1;
-  std::unique_ptr<VoxelTable<Counts>> cubes_;
 };
 
 }  // namespace ray
