@@ -102,14 +102,32 @@ bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::
   return std::abs(median(residuals, count)) > sigmas * sigma;
 }
 
-/// A wire has too few points for sixteen of them to look like one.
+/// How thin a surfel looks from the sensor: its least variance across the ray, as a part of the greatest.
+double thinness(const Surfel& surfel, const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d middle = surfel.axis.cross(surfel.normal);
+  const auto seen = [&](const Eigen::Vector3d& direction) -> Eigen::Vector3d {
+    return direction - direction.dot(ray) * ray;
+  };
+  const Eigen::Matrix3d covariance =
+      surfel.variances[0] * seen(surfel.normal) * seen(surfel.normal).transpose() +
+      surfel.variances[1] * seen(middle) * seen(middle).transpose() +
+      surfel.variances[2] * seen(surfel.axis) * seen(surfel.axis).transpose();
+  // Of the two eigenvalues across the ray: their sum, and their product.
+  const double sum = covariance.trace();
+  const double product = 0.5 * (sum * sum - covariance.squaredNorm());
+  const double largest = 0.5 * (sum + std::sqrt(std::max(sum * sum - 4.0 * product, 0.0)));
+  return largest > 0.0 ? (sum - largest) / largest : 1.0;
+}
+
+/// A wire has too few points for sixteen of them to look like one, and range noise may be as large as the
+/// distance between them; but from the sensor they look like a line, and their ranges are alike.
 bool is_on_wire(NeighbourSearch& search, std::size_t place, double reach) {
-  constexpr SurfelRule kFew{.neighbours = 6, .by_side = false};
-  SurfelRule rule = kFew;
-  rule.reach = reach;
-  const Surfel surfel = surfel_at(search, place, rule);
-  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place));
-  return surfel.variances[1] < kLineLike * surfel.variances[2] && std::abs(surfel.axis.dot(ray)) < kAcrossRay;
+  constexpr double kThin = 0.02;
+  constexpr double kLong = 0.3;
+  const Surfel surfel = surfel_at(search, place, {.neighbours = 6, .reach = reach, .by_side = false});
+  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place)).normalized();
+  return surfel.variances[1] < kLong * surfel.variances[2] && std::abs(surfel.axis.dot(ray)) < kAcrossRay &&
+         thinness(surfel, ray) < kThin;
 }
 
 /// Student's quantile for a normal one (Cornish and Fisher 1938): the variances of sixteen neighbours, who
