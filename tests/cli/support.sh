@@ -122,6 +122,7 @@ raycombine $1 $1
 raycombine $1 --join
 raycolour $1 time
 raycolour $1 alpha 0.5
+raycolour $1 normal --lit
 raypipe $1 colour height : translate 1,2,3
 rayrender $1 top ends
 END
