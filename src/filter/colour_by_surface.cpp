@@ -84,9 +84,9 @@ double ridge_at(const PointTree& tree, std::span<const PackedDirection> normals,
 
 std::uint8_t shade_of(const Eigen::Vector3d& normal, double ridge) {
   const Eigen::Vector3d to_light(0.36, -0.48, 0.8);  // the front, the right, above
-  constexpr double kFill = 0.4;
+  constexpr double kFill = 0.5;
   constexpr double kRelief = 1.0;
-  // Softly: half as bright as at most across the light, not black but where it is opposite.
+  // Softly: dark only where it is opposite, and not black there.
   const auto light = [&](double facing) { return kFill + (1.0 - kFill) * (1.0 + facing) / 2.0; };
   const double relief = std::clamp(1.0 + kRelief * ridge, 0.5, 1.5);
   const double part = light(normal.dot(to_light)) / light(to_light.z()) * relief;
