@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 namespace ray {
 
@@ -12,15 +14,17 @@ SpaceCuts::SpaceCuts(std::vector<Eigen::Vector3d> sample, std::size_t parts)
 
 void SpaceCuts::cut(std::size_t node, std::span<Eigen::Vector3d> sample) {
   if (node >= cuts_.size()) return;
-  if (sample.empty()) {  // this half is as empty as its sample: what comes here goes to one part
-    cut(2 * node, sample);
-    cut(2 * node + 1, sample);
-    return;
-  }
-  Eigen::Vector3d low = sample.front(), high = sample.front();
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
+  if (!sample.empty()) low = high = sample.front();
   for (const Eigen::Vector3d& point : sample) {
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
+  }
+  if (low == high) {  // nothing to divide: what comes here goes to one part, and nothing is near the others
+    cuts_[node].at = std::numeric_limits<double>::max();
+    cut(2 * node, sample);
+    cut(2 * node + 1, {});
+    return;
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);

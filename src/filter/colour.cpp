@@ -1,3 +1,5 @@
+#include "colour_by_surface.h"
+
 #include <raycloud/core/error.h>
 #include <raycloud/filter/colour.h>
 
@@ -130,18 +132,12 @@ Bounds bounded_ends(const Context& context, RaySource& source) {
   return bounds;
 }
 
-StreamCounts colour_by_image(const Context& context, RaySource& source, RaySink& sink, const Image& image) {
-  if (image.pixels.empty()) throw Error(ErrorCode::usage, "an image without pixels has no colours");
-  const Bounds bounds = bounded_ends(context, source);
-  source.rewind();
-  const ImageMap map(image, bounds);
-  return stream_each(context, source, sink, [&](RayCloud& rays) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Pixel* pixel = map.at(rays.ends[i]);
-      if (pixel != nullptr && pixel->alpha >= kOpaque)
-        set_rgb(rays.colours[i], {pixel->red, pixel->green, pixel->blue});
-    }
-  });
+void colour_chunk(const ImageMap& map, RayCloud& rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Pixel* pixel = map.at(rays.ends[i]);
+    if (pixel != nullptr && pixel->alpha >= kOpaque)
+      set_rgb(rays.colours[i], {pixel->red, pixel->green, pixel->blue});
+  }
 }
 
 }  // namespace
@@ -150,14 +146,26 @@ Colour hue_colour(double turns) {
   return hues()(turns);
 }
 
-StreamCounts colour_rays(const Context& context, RaySource& source, RaySink& sink,
-                         const Colouring& colouring) {
+StreamCounts colour_rays(const Context& context, RaySource& source, RaySink& sink, const Colouring& colouring,
+                         Shading shading) {
+  const auto run = [&](const auto& rule) {
+    const auto paint = [&](RayCloud& rays) { colour_chunk(rule, rays); };
+    return shading == Shading::none ? stream_each(context, source, sink, paint)
+                                    : colour_by_surface(context, source, sink, colouring, shading, paint);
+  };
   return std::visit(
       [&]<class Rule>(const Rule& rule) {
-        if constexpr (std::is_same_v<Rule, ColourByImage>)
-          return colour_by_image(context, source, sink, rule.image);
-        else
-          return stream_each(context, source, sink, [&](RayCloud& rays) { colour_chunk(rule, rays); });
+        if constexpr (ColouredBySurface<Rule>) {
+          return colour_by_surface(context, source, sink, colouring, shading, {});
+        } else if constexpr (std::is_same_v<Rule, ColourByImage>) {
+          if (rule.image.pixels.empty())
+            throw Error(ErrorCode::usage, "an image without pixels has no colours");
+          const Bounds bounds = bounded_ends(context, source);
+          source.rewind();
+          return run(ImageMap(rule.image, bounds));
+        } else {
+          return run(rule);
+        }
       },
       colouring);
 }

@@ -17,7 +17,8 @@ inline SeenPoint seen_point(const RayCloud& rays, std::size_t i) {
 }
 
 /// How far neighbours may be, by the sample alone: far enough for places with a hundredth of the density of
-/// the rest. What is further from everything else has no neighbours. Infinite for very few points.
+/// the rest. What is further from everything else has no neighbours. Infinite for very few points, 0
+/// where all are in one place.
 [[nodiscard]] double neighbour_reach(const EndSample& sample);
 
 /// Calls `work(search, place)` for every place of the tree, on all threads, those of a thread near each

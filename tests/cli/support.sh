@@ -124,6 +124,7 @@ raycombine $1 $1
 raycombine $1 --join
 raycolour $1 time
 raycolour $1 alpha 0.5
+raycolour $1 normal --lit
 raypipe $1 colour height : translate 1,2,3
 raysmooth $1
 raypipe $1 smooth : colour time

@@ -19,6 +19,13 @@ const Command kCommand{
 from red (at whole minutes) over green to blue, `height` once each 10 metres of z, and `alpha` shows
 the intensity in grey.
 
+`shape`, `normal` and `branches` look at the nearest neighbours of each point: red is what is equally
+thick in all directions, green what is long, blue what is flat; or the direction of the surface, x, y
+and z from -1 to 1 in red, green and blue; or what is like a branch or a thin trunk, in red where it
+lies flat, over yellow to green where it stands upright, and dark grey elsewhere. There, rays that
+hit nothing become black. `--lit` puts light on the surfaces, whatever their colours are: from above
+and one side, with darker hollows and brighter ridges.
+
 `alpha V` leaves the colours and sets the intensity, where something was hit; as intensity 0 means
 that nothing was, `alpha 0` makes all rays unbounded. `image` lays a picture over the cloud as seen
 from above, as large as it must be to cover it without being stretched: what `rayrender CLOUD top`
@@ -27,6 +34,10 @@ drew, and you painted over, falls back into place. Transparent places leave the 
                 .words = {cloud(), choice("BY", {"time", "height", "alpha"})},
                 .help = "by the time, the height or the intensity of each ray",
                 .example = "raycolour cloud.ply time"},
+               {.name = "surface",
+                .words = {cloud(), choice("BY", {"shape", "normal", "branches"})},
+                .help = "by what the surface around each point is like",
+                .example = "raycolour cloud.ply normal --lit"},
                {.name = "intensity",
                 .words = {cloud(), literal("alpha"), number("V", between(0.0, 1.0))},
                 .help = "sets the intensity, from 0 to 1",
@@ -39,9 +50,14 @@ drew, and you painted over, falls back into place. Transparent places leave the 
                 .words = {cloud(), literal("image"), input("FILE", {".png", ".jpg", ".bmp", ".tga"})},
                 .help = "the colours of an image that lies on the cloud, seen from above",
                 .example = "raycolour cloud.ply image map.png"}},
-    .options = {output_option("CLOUD_coloured.ply"), view_option()},
+    .options = {{.name = "lit", .help = "shade the colours by light from above, hollows and ridges"},
+                output_option("CLOUD_coloured.ply"),
+                view_option()},
     .writes = "CLOUD_coloured.ply",
-    .memory = "Less than 200 MB for any cloud, and the image.",
+    .memory =
+        R"(Less than 200 MB for any cloud, and the image. By `shape`, `normal`, `branches` and with `--lit`, 90
+bytes for each ray that hit something besides; where that is more than --memory allows, the cloud goes
+block by block through temporary files in the folder that TMPDIR names, or in /var/tmp.)",
     .see_also = {"rayrender", "rayinfo"}};
 
 std::uint8_t to_byte(double fraction) {
@@ -63,12 +79,20 @@ Colouring colouring_of(const Match& match) {
   const std::string& by = match.text("BY");
   if (by == "time") return ColourByTime{};
   if (by == "height") return ColourByHeight{};
+  if (by == "shape") return ColourByShape{};
+  if (by == "normal") return ColourByNormal{};
+  if (by == "branches") return ColourByBranches{};
   return ColourByIntensity{};
 }
 
 StepReport run(const Match& match, const Context& context, RaySource& source, const SinkMaker& make) {
   const Colouring colouring = colouring_of(match);
-  return report_of(colour_rays(context, source, make(0, source.info()), colouring));
+  const Shading shading = match.has("--lit") ? Shading::lit : Shading::none;
+  return report_of(colour_rays(context, source, make(0, source.info()), colouring, shading));
+}
+
+bool by_ray(const Match& match) {
+  return match.usage() != "image" && match.usage() != "surface" && !match.has("--lit");
 }
 
 }  // namespace
@@ -76,7 +100,7 @@ StepReport run(const Match& match, const Context& context, RaySource& source, co
 const Step kColourStep{.command = kCommand,
                        .outputs = {{"", "_coloured"}},
                        .run = run,
-                       .by_ray = [](const Match& match) { return match.usage() != "image"; },
+                       .by_ray = by_ray,
                        .keeps_places = [](const Match&) { return true; }};
 
 }  // namespace ray::tools

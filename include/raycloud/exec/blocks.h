@@ -109,6 +109,7 @@ class SpilledBlocks {
       check_cancelled(context);
       Block<Record> block = load(part);
       const std::vector<std::uint8_t> own = block.own;
+      if (std::count(own.begin(), own.end(), 0) == static_cast<std::ptrdiff_t>(own.size())) continue;
       const std::vector<Result> results = compute(context, std::move(block), reach_);
       for (std::size_t i = 0; i < own.size(); ++i)
         if (own[i] != 0) results_.append(part, &results[i], sizeof(Result));
