@@ -3,6 +3,7 @@
 #include "range_edges.h"
 #include "require.h"
 
+#include <raycloud/exec/blocks.h>
 #include <raycloud/filter/denoise.h>
 
 #include <array>
@@ -12,6 +13,15 @@
 
 namespace ray {
 namespace {
+
+/// The rays that stay: all but bounded ones that are noise.
+std::vector<std::uint8_t> without_noise(const RayCloud& rays, std::span<const std::uint8_t> noise) {
+  std::vector<std::uint8_t> mask(rays.size(), 1);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0) mask[i] = noise[next++] == 0 ? 1 : 0;
+  return mask;
+}
 
 /// Writes all rays but the bounded ones that are noise.
 StreamCounts write_rest(const Context& context, RaySource& source, RaySink& sink,
@@ -40,13 +50,14 @@ void each_bounded(const Context& context, RaySource& source, const Add& add) {
 }
 
 Denoised far_ends(const Context& context, RaySource& source, RaySink& sink, const FarFromOthers& rule) {
-  std::vector<Eigen::Vector3d> ends;
-  ends.reserve(source.info().ray_count.value_or(0));
-  each_bounded(context, source, [&](const RayCloud& rays, std::size_t i) { ends.push_back(rays.ends[i]); });
-  const std::vector<std::uint8_t> noise =
-      far_from_others(context, ends, rule.distance.value, rule.min_neighbours);
-  ends = {};
-  return {write_rest(context, source, sink, noise), true};
+  const BlockNeeds needs{.bytes_per_record = 38,
+                         .reach = [&](const EndSample&) { return rule.distance.value; }};
+  const auto extract = [](const RayCloud& rays, std::size_t i) { return rays.ends[i]; };
+  const auto compute = [&](const Context& with, Block<Eigen::Vector3d>&& block, double) {
+    return far_from_others(with, block.records, rule.distance.value, rule.min_neighbours);
+  };
+  return {.counts = run_blocks<Eigen::Vector3d, std::uint8_t>(context, source, sink, needs, extract, compute,
+                                                              without_noise)};
 }
 
 /// The extra column that tells the lasers of the sensor apart, if there is one.

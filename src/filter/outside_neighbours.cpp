@@ -124,8 +124,12 @@ double thinness(const Surfel& surfel, const Eigen::Vector3d& ray) {
 bool is_on_wire(NeighbourSearch& search, std::size_t place, double reach) {
   constexpr double kThin = 0.02;
   constexpr double kLong = 0.3;
+  constexpr double kWithin = 2.0;
   const Surfel surfel = surfel_at(search, place, {.neighbours = 6, .reach = reach, .by_side = false});
   const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place)).normalized();
+  // Nor does the point alone make the line, far from all others.
+  const double along = (search.tree().point(place) - surfel.centroid).dot(surfel.axis);
+  if (along * along > kWithin * kWithin * surfel.variances[2]) return false;
   return surfel.variances[1] < kLong * surfel.variances[2] && std::abs(surfel.axis.dot(ray)) < kAcrossRay &&
          thinness(surfel, ray) < kThin;
 }

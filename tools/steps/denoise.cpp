@@ -18,7 +18,8 @@ const Command kCommand{
         R"(Leaves out the rays that end in noise; the others stay exactly as they were, with all their columns.
 Rays that hit nothing stay too. In the first form noise is what ends alone: no other end is within the
 distance. With `sigmas` it is what lies further from the surface of its neighbours than so many
-standard deviations of that surface.
+standard deviations of that surface: 3 take one in 400 of good points. Ends that are part of no surface
+or wire are noise, too, where nearly all rays pass them by.
 
 With `range`, it is what ends between two surfaces because one beam met both: its range differs by more
 than the distance from those of the beams on both sides of it and is between them. Which beams are next
@@ -45,8 +46,9 @@ thinned; where a cloud does not tell, neighbours in space are compared, which fi
                 view_option()},
     .writes = "CLOUD_denoised.ply",
     .memory =
-        R"(About 38 bytes for each ray with a distance, 90 with `range`, 130 where neighbours in space are
-compared; less than 200 MB besides.)",
+        R"(40 bytes a ray with a distance, 90 with `sigmas`, or what --memory allows: a larger cloud is worked on in
+blocks, which lie in temporary files in the folder that TMPDIR names, or in /var/tmp. 90 to 130 bytes a
+ray with `range`, whatever --memory allows.)",
     .see_also = {"raydecimate", "raysplit", "rayinfo"}};
 
 Noise noise_of(const Match& match) {
