@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
