@@ -69,12 +69,31 @@ Opinion opinion_of(const NoisyPlane& plane, const Eigen::Vector3d& offset) {
   return {residual / std::sqrt(rest), std::max(variance, 0.0)};
 }
 
-template <std::size_t kMost>
-double median(std::array<double, kMost>& values, std::size_t count) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-  if (count % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+/// The exchanges that sort sixteen values whatever they are (Batcher 1968), without a branch.
+constexpr auto sorting_network() {
+  constexpr std::size_t kValues = kSurfaceNeighbours;
+  std::array<std::array<std::uint8_t, 2>, 63> pairs{};
+  std::size_t count = 0;
+  for (std::size_t p = 1; p < kValues; p *= 2)
+    for (std::size_t k = p; k > 0; k /= 2)
+      for (std::size_t j = k % p; j + k < kValues; j += 2 * k)
+        for (std::size_t i = j; i < j + k && i + k < kValues; ++i)
+          if (i / (2 * p) == (i + k) / (2 * p))
+            pairs[count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i + k)};
+  return pairs;
+}
+
+using Values = std::array<double, kSurfaceNeighbours>;
+
+/// Of the first `count`; the rest must be infinite.
+double median(Values values, std::size_t count) {
+  static constexpr auto kNetwork = sorting_network();
+  for (const auto& [low, high] : kNetwork) {
+    const double a = values[low], b = values[high];
+    values[low] = std::min(a, b);
+    values[high] = std::max(a, b);
+  }
+  return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
 /// Medians, so that neither one noisy neighbour nor the order of them matters.
@@ -82,7 +101,9 @@ bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::
                 std::span<const Neighbour> neighbours, double sigmas) {
   constexpr double kLonely =
       3.0;  // times as far from the nearest neighbour as the neighbours from their 16th
-  std::array<double, NeighbourSearch::kMost> residuals, variances, reaches;
+  Values residuals, variances, reaches;
+  for (Values* values : {&residuals, &variances, &reaches})
+    values->fill(std::numeric_limits<double>::infinity());
   std::size_t count = 0;
   double nearest2 = std::numeric_limits<double>::infinity();
   for (const Neighbour& neighbour : neighbours) {
@@ -95,7 +116,9 @@ bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::
     reaches[count++] = plane.reach;
   }
   if (count == 0) return false;
-  if (std::sqrt(nearest2) > kLonely * median(reaches, count)) return true;
+  const double nearest = std::sqrt(nearest2);
+  const bool may_be_lonely = nearest > kLonely * *std::min_element(reaches.begin(), reaches.end());
+  if (may_be_lonely && nearest > kLonely * median(reaches, count)) return true;
   // The median of variances from 13 degrees of freedom is 5 % below their mean.
   constexpr double kMedian = 0.95;
   const double sigma = std::max(std::sqrt(median(variances, count) / kMedian), kLeastSigma);
