@@ -104,7 +104,7 @@ void Spill::load_page(Stream& stream, std::uint64_t number) {
 }
 
 void Spill::drop(std::size_t stream) {
-  streams_[stream].page = {};
+  streams_[stream].page = std::vector<std::byte>();
 }
 
 }  // namespace ray

@@ -96,7 +96,7 @@ std::uint8_t shade_of(const Eigen::Vector3d& normal, double ridge) {
 std::vector<SurfaceColour> colour_block(const Context& context, Block<SeenPoint>&& block, double reach,
                                         const SurfaceRule& rule, Shading shading) {
   const PointTree tree(context, block.records);
-  block.records = {};
+  block.records = std::vector<SeenPoint>();
   const bool lit = shading == Shading::lit;
   const double neighbour_reach = lit ? reach / 2.0 : reach;
   const auto within_reach = [&](SurfelRule surfel_rule) {

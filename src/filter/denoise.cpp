@@ -102,7 +102,7 @@ Denoised range_edge_ends(const Context& context, RaySource& source, RaySink& sin
     reorder(beams.ends, order);
     reorder(beams.rings, order);
   }
-  times = {};
+  times = std::vector<double>();
   RangeEdges edges = range_edges(context, beams, rule.distance.value);
   beams = {};
   std::vector<std::uint8_t> noise(order.size());

@@ -167,7 +167,7 @@ double for_estimated_sigma(double sigmas) {
 std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoint>&& block, double reach,
                                            double sigmas, const TransparentCubes& transparent) {
   const PointTree tree(context, block.records);
-  block.records = {};
+  block.records = std::vector<SeenPoint>();
   std::vector<NoisyPlane> planes(tree.size());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)

@@ -1,5 +1,6 @@
 #include "surface_points.h"
 
+#include <raycloud/exec/parallel.h>
 #include <raycloud/filter/smooth.h>
 
 #include <algorithm>
@@ -155,9 +156,22 @@ std::span<const Neighbour> neighbours_of(NeighbourSearch& search, std::size_t pl
   return search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
 }
 
+/// By the plane's height: along the ray where that is not too much aslant, else along the normal.
+Move move_of(const LocalPlane& plane, const PackedDirection& to_sensor) {
+  constexpr double kFacing = 0.3;  // cosine from which on the ray is better than the normal
+  if (plane.normal.isZero()) return Move::Zero();
+  const Eigen::Vector3d normal = plane.normal.cast<double>();
+  const Eigen::Vector3d ray = unpack_direction(to_sensor).normalized();
+  const double facing = ray.dot(normal);
+  const bool along_ray = facing > kFacing;
+  const double height = plane.height, most = plane.reach;
+  const double distance = std::clamp(along_ray ? height / facing : height, -most, most);
+  return (distance * (along_ray ? ray : normal)).cast<float>();
+}
+
 std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block, double reach) {
   const PointTree tree(context, block.records);
-  block.records = {};
+  block.records = std::vector<SeenPoint>();
   std::vector<LocalPlane> planes(tree.size());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)
@@ -172,22 +186,21 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
       surfaces[place] = fit.at(place, neighbours_of(search, place, planes[place]));
     }
   });
-  std::vector<Move> moves(tree.size(), Move::Zero());
+  // Only the normals of other planes matter from here on: the distance to the surface takes the place of the
+  // height.
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    constexpr double kFacing = 0.3;  // cosine from which on the ray is better than the normal
     SurfaceFit fit(tree, planes);
     for (std::size_t place = begin; place < end; ++place) {
-      const LocalPlane& plane = planes[place];
+      LocalPlane& plane = planes[place];
       if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
-      const double height = fit.height(place, neighbours_of(search, place, plane), surfaces);
-      const Eigen::Vector3d normal = plane.normal.cast<double>();
-      const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place)).normalized();
-      const double facing = ray.dot(normal);
-      const bool along_ray = facing > kFacing;
-      const double most = plane.reach;
-      const double distance = std::clamp(along_ray ? height / facing : height, -most, most);
-      moves[tree.index(place)] = (distance * (along_ray ? ray : normal)).cast<float>();
+      plane.height = static_cast<float>(fit.height(place, neighbours_of(search, place, plane), surfaces));
     }
+  });
+  surfaces = std::vector<LocalSurface>();
+  std::vector<Move> moves(tree.size(), Move::Zero());
+  parallel_for(context, tree.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t place = begin; place < end; ++place)
+      moves[tree.index(place)] = move_of(planes[place], tree.to_sensor(place));
   });
   return moves;
 }

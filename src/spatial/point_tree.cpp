@@ -198,7 +198,7 @@ class PointTree::Builder {
       nodes_[buckets_ + bucket] = moved(nodes_[buckets_ + bucket]);
       for (std::size_t i = 0; i < below_[bucket].size(); ++i)
         put(base[bucket] + i, moved(below_[bucket][i]));
-      below_[bucket] = {};
+      below_[bucket] = std::vector<Node>();
     });
     for (std::size_t node = buckets_ - 1; node > 0; --node) {
       const Node& left = nodes_[2 * node];

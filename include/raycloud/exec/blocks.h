@@ -183,7 +183,7 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
     if (sampler.sample().bounded <= fitting)
       whole.records.insert(whole.records.end(), extracted.records.begin(), extracted.records.end());
     else
-      whole.records = {};
+      whole.records = std::vector<Record>();
   });
   source.rewind();
   const EndSample& sample = sampler.sample();
