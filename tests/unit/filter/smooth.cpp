@@ -117,7 +117,7 @@ TEST(SmoothRays, StartsAndTheRestStay) {
 }
 
 TEST(SmoothRays, SameBytesForAnyThreadsChunksAndMemory) {
-  const RayCloud cloud = scan(20000, 0.02, [](const RandomStream& random, std::size_t i) {
+  const RayCloud cloud = scan(8000, 0.02, [](const RandomStream& random, std::size_t i) {
     const double x = 30.0 * random.uniform(i, 0);
     return Sample{{x, 2.0 * random.uniform(i, 1), i % 3 == 0 ? 0.06 : 0.3 * std::sin(x)},
                   {15.0, 1.0, i % 3 == 0 ? -5.0 : 5.0}};
