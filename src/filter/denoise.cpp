@@ -2,6 +2,7 @@
 #include "outside_neighbours.h"
 #include "range_edges.h"
 #include "require.h"
+#include "without_noise.h"
 
 #include <raycloud/exec/blocks.h>
 #include <raycloud/filter/denoise.h>
@@ -13,15 +14,6 @@
 
 namespace ray {
 namespace {
-
-/// The rays that stay: all but bounded ones that are noise.
-std::vector<std::uint8_t> without_noise(const RayCloud& rays, std::span<const std::uint8_t> noise) {
-  std::vector<std::uint8_t> mask(rays.size(), 1);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays.bounded[i] != 0) mask[i] = noise[next++] == 0 ? 1 : 0;
-  return mask;
-}
 
 /// Writes all rays but the bounded ones that are noise.
 StreamCounts write_rest(const Context& context, RaySource& source, RaySink& sink,
