@@ -2,6 +2,7 @@
 
 #include "surface_points.h"
 #include "transparent_cubes.h"
+#include "without_noise.h"
 
 #include <algorithm>
 #include <array>
@@ -174,15 +175,15 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
       planes[place] =
           noisy_plane(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
   });
-  std::vector<std::uint8_t> keep(tree.size(), 1);
+  std::vector<std::uint8_t> noise(tree.size());
   const double most = for_estimated_sigma(sigmas);
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {
       const NoisyPlane& plane = planes[place];
       if (!block.is_own(tree.index(place))) continue;
-      std::uint8_t& kept = keep[tree.index(place)];
+      std::uint8_t& is_noise = noise[tree.index(place)];
       if (plane.points <= kFewest) {
-        kept = std::isfinite(reach) ? 0 : 1;  // in a cloud of a few rays nobody can tell
+        is_noise = std::isfinite(reach) ? 1 : 0;  // in a cloud of a few rays nobody can tell
         continue;
       }
       const auto neighbours =
@@ -191,10 +192,10 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
               : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
       const bool outside = is_outside(tree, planes, place, neighbours, most);
       const bool in_passing = !plane.is_flat && transparent.has(tree.point(place));
-      if (outside || in_passing) kept = is_on_wire(search, place, reach / 2.0) ? 1 : 0;
+      if (outside || in_passing) is_noise = is_on_wire(search, place, reach / 2.0) ? 0 : 1;
     }
   });
-  return keep;
+  return noise;
 }
 
 }  // namespace
@@ -206,15 +207,8 @@ Denoised outside_neighbours(const Context& context, RaySource& source, RaySink& 
   const auto compute = [&](const Context& with, Block<SeenPoint>&& block, double reach) {
     return outside_of_block(with, std::move(block), reach, sigmas, transparent);
   };
-  return {.counts =
-              run_blocks<SeenPoint, std::uint8_t>(context, source, sink, needs, seen_point, compute,
-                                                  [](RayCloud& rays, std::span<const std::uint8_t> keep) {
-                                                    std::vector<std::uint8_t> mask(rays.size(), 1);
-                                                    std::size_t next = 0;
-                                                    for (std::size_t i = 0; i < rays.size(); ++i)
-                                                      if (rays.bounded[i] != 0) mask[i] = keep[next++];
-                                                    return mask;
-                                                  })};
+  return {.counts = run_blocks<SeenPoint, std::uint8_t>(context, source, sink, needs, seen_point, compute,
+                                                        without_noise)};
 }
 
 }  // namespace ray
