@@ -100,8 +100,8 @@ double median(Values values, std::size_t count) {
 /// Medians, so that neither one noisy neighbour nor the order of them matters.
 bool is_outside(const PointTree& tree, std::span<const NoisyPlane> planes, std::size_t place,
                 std::span<const Neighbour> neighbours, double sigmas) {
-  constexpr double kLonely =
-      3.0;  // times as far from the nearest neighbour as the neighbours from their 16th
+  // So many times as far from its nearest neighbour as those are from their sixteenth.
+  constexpr double kLonely = 3.0;
   Values residuals, variances, reaches;
   for (Values* values : {&residuals, &variances, &reaches})
     values->fill(std::numeric_limits<double>::infinity());

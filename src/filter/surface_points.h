@@ -21,8 +21,8 @@ inline SeenPoint seen_point(const RayCloud& rays, std::size_t i) {
 /// where all are in one place.
 [[nodiscard]] double neighbour_reach(const EndSample& sample);
 
-/// Calls `work(search, place)` for every place of the tree, on all threads, those of a thread near each
-/// other.
+/// Calls `work(search, begin, end)` for ranges of places that cover the tree, on all threads; places of a
+/// range are near each other.
 void for_each_place(const Context& context, const PointTree& tree,
                     const std::function<void(NeighbourSearch&, std::size_t begin, std::size_t end)>& work);
 

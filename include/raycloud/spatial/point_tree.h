@@ -20,7 +20,7 @@ namespace ray {
 /// point, so that the neighbours of a point do not depend on how the tree was built, nor on points out of
 /// reach.
 ///
-/// Building costs O(n log n), about 0.2 µs a point and thread. Memory: 46 bytes a point. At most 2^32 - 1
+/// Building costs O(n log n), about 0.2 µs a point and thread. Memory: 40 bytes a point. At most 2^32 - 1
 /// points.
 class PointTree {
  public:
