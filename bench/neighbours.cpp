@@ -5,7 +5,7 @@
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/stream.h>
 #include <raycloud/io/ray_cloud_file.h>
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <chrono>
 #include <cstdio>

@@ -1,7 +1,7 @@
 #include "plain_smoothing.h"
 
 #include <raycloud/exec/parallel.h>
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <Eigen/Eigenvalues>
 #include <limits>

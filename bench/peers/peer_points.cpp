@@ -2,7 +2,7 @@
 
 #include <raycloud/exec/stream.h>
 #include <raycloud/io/ray_cloud_file.h>
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <algorithm>
 #include <cmath>

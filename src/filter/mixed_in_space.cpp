@@ -2,7 +2,7 @@
 
 #include <raycloud/core/bounds.h>
 #include <raycloud/exec/parallel.h>
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -34,7 +34,8 @@ class PointTree {
   [[nodiscard]] std::uint32_t index(std::size_t place) const { return index_[place]; }
 
  private:
-  friend class NeighbourSearch;
+  friend class TreeWalk;
+  friend class LeafSurroundings;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr std::size_t kLeafPoints = 32;  // most
@@ -57,76 +58,6 @@ class PointTree {
   std::vector<PackedDirection> to_sensor_;
   std::vector<std::uint32_t> index_;
   std::vector<Pair> pairs_;
-};
-
-struct Neighbour {
-  double distance2 = 0.0;  ///< m²
-  std::uint32_t place = 0;
-};
-
-/// Searches in a tree, with the memory that they need; one for each thread. Points at places that are asked
-/// for one after the other are found fastest in the order of the tree.
-class NeighbourSearch {
- public:
-  static constexpr std::size_t kMost = 64;  ///< neighbours of one point
-
-  explicit NeighbourSearch(const PointTree& tree) : tree_(tree) {}
-
-  /// The `count` nearest other points within `reach` (m, inclusive), ties by index; fewer where there
-  /// are fewer. In no order that could be relied on. Valid until the next call. About 1 µs for 16.
-  /// Precondition: count <= kMost.
-  std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach);
-
-  /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.
-  std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
-                                            const Eigen::Vector3d& normal);
-
-  [[nodiscard]] const PointTree& tree() const { return tree_; }
-
- private:
-  /// Points [first, first + count), seen from outside.
-  struct Leaf {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-  };
-  /// What lies beside the way from the root to the leaf of the last place.
-  struct Beside {
-    std::uint32_t node = 0;
-    double from_leaf = 0.0;  ///< squared distance of the boxes
-  };
-  struct Open {
-    std::uint32_t node;
-    double distance2;
-  };
-  void go_to_leaf(std::size_t place);
-  template <class Accept>
-  std::span<const Neighbour> search(std::size_t place, std::size_t count, double reach, double known,
-                                    const Accept& accept);
-  [[nodiscard]] std::array<double, 2> distances(const PointTree::Pair& pair) const;
-  [[nodiscard]] std::size_t count_within(double distance2);
-  void keep_nearest();
-  void sort_nearest();
-  [[nodiscard]] std::uint32_t near_points(Leaf leaf, double* distance2) const;
-  template <class Accept>
-  void scan(Leaf leaf, const Accept& accept);
-
-  const PointTree& tree_;
-  Leaf leaf_;
-  std::vector<Beside> beside_;
-  std::array<Open, 96> open_{};  ///< nodes still to be looked at; a tree has less than 64 levels
-  std::size_t last_count_ = 0;   ///< of a search for all that found as many as it should; else 0
-  double last_furthest2_ = 0.0;
-  // Of the search under way.
-  std::uint32_t self_ = 0;
-  std::size_t most_ = 0;
-  std::size_t count_ = 0;
-  double bound_ = 0.0;  ///< squared; of equal ones, indices from bound_index_ on are out
-  std::uint32_t bound_index_ = 0;
-  std::array<double, 3> at_{};
-  static constexpr std::size_t kRoom = 2 * kMost + 2 * PointTree::kLeafPoints;
-  std::array<double, kRoom + 1> distance2_{};
-  std::array<std::uint32_t, kRoom> place_{};
-  std::array<Neighbour, kMost> found_{};
 };
 
 }  // namespace ray

@@ -1,7 +1,7 @@
 #pragma once
 /// The surface around a point, from its neighbours that were seen from the same side (paper, section VI-D).
 
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/random.h>
-#include <raycloud/spatial/point_tree.h>
+#include <raycloud/spatial/neighbour_search.h>
 #include <raycloud/spatial/surfel.h>
 #include <raycloud/spatial/symmetric_eigen.h>
 

@@ -1,0 +1,44 @@
+#pragma once
+/// The nearest neighbours of the points of a tree, exact.
+
+#include <raycloud/spatial/point_tree.h>
+
+#include <memory>
+#include <span>
+
+namespace ray {
+
+struct Neighbour {
+  double distance2 = 0.0;  ///< m²
+  std::uint32_t place = 0;
+};
+
+/// Searches in a tree, with the memory that they need (about 40 kB); one for each thread. Made for all points
+/// one after the other, in the order of the tree: what is around a leaf is gathered once for its points.
+class NeighbourSearch {
+ public:
+  static constexpr std::size_t kMost = 64;  ///< neighbours of one point
+
+  explicit NeighbourSearch(const PointTree& tree);
+  ~NeighbourSearch();
+  NeighbourSearch(const NeighbourSearch&) = delete;
+  NeighbourSearch& operator=(const NeighbourSearch&) = delete;
+
+  /// The `count` nearest other points within `reach` (m, inclusive), ties by index; fewer where there
+  /// are fewer. In no order that could be relied on. Valid until the next call. About 0.5 µs for 16.
+  /// Precondition: count <= kMost.
+  std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach);
+
+  /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.
+  std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
+                                            const Eigen::Vector3d& normal);
+
+  [[nodiscard]] const PointTree& tree() const { return tree_; }
+
+ private:
+  class Impl;
+  const PointTree& tree_;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ray
