@@ -4,6 +4,8 @@
 #include <raycloud/filter/smooth.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -21,150 +23,161 @@ struct LocalPlane {
 LocalPlane plane_of(const PointTree& tree, std::size_t place, const Surfel& surfel) {
   if (!surfel.is_surface()) return {};
   const double height = surfel.normal.dot(surfel.centroid - tree.point(place));
-  return {
-      surfel.normal.cast<float>(), static_cast<float>(height),
-      static_cast<float>(surfel.variances[1] + surfel.variances[2]),
-      std::nextafter(static_cast<float>(std::sqrt(surfel.reach2)), std::numeric_limits<float>::infinity())};
+  return {surfel.normal.cast<float>(), static_cast<float>(height),
+          static_cast<float>(surfel.variances[1] + surfel.variances[2]),
+          static_cast<float>(std::sqrt(surfel.reach2))};
 }
 
-/// The surface near a point, seen from the plane through it across its normal.
-struct LocalSurface {
-  float height = 0.0F;     // m, along the normal, as if it were flat
-  float curvature = 0.0F;  // 1/m, the mean of both
-  float lever = 0.0F;      // m², by which curvature makes that height wrong
+// As many points as this are asked for the surface through one.
+constexpr std::size_t kMostPlanes = 63;
+// They are within so many times the reach of its plane: some forty on a surface.
+constexpr double kWider = 1.6;
+
+/// Four points at a time.
+using Lanes = Eigen::Array4f;
+
+/// Sums of what single points add, as whole numbers of a small part of the unit: exact, and so the same in
+/// any order. One point adds no more than 32 units.
+class ExactSum {
+ public:
+  void add(const Lanes& values) {
+    constexpr float kMost = 32.0F;
+    const Lanes parts = values.min(kMost).max(-kMost) * kParts;  // all four at once, as it has a name
+    sum_ += parts.cast<std::int32_t>();
+  }
+  [[nodiscard]] double value() const { return sum_.sum() * (1.0 / static_cast<double>(kParts)); }
+
+ private:
+  static constexpr float kParts = 0x1p21F;
+  Eigen::Array<std::int32_t, 4, 1> sum_ = Eigen::Array<std::int32_t, 4, 1>::Zero();
 };
 
-/// From the planes of the neighbours, seen as a sample of a surface and its slopes. Their mean height is the
-/// height of the surface but for its curvature, which pulls it towards the hollow side twice: the points of
-/// each plane lie on a curved surface, and so do the planes. The curvature is how much their slopes change
-/// from place to place.
+struct LanesOfVectors {
+  Lanes x, y, z;
+  [[nodiscard]] Lanes dot(const Eigen::Vector3f& other) const {
+    return x * other.x() + y * other.y() + z * other.z();
+  }
+};
+
+/// The surface through the planes around a point, which are a sample of its heights and slopes. Their mean
+/// height is that of the surface but for its curvature, which pulls it towards the hollow side twice: the
+/// points of each plane lie on a curved surface, and so do the planes. The curvature is how much their slopes
+/// change from place to place; it is trusted as far as it is more than its error. The unit of length is about
+/// the reach of the neighbours.
 class SurfaceFit {
  public:
-  SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes) : tree_(tree), planes_(planes) {}
-
-  [[nodiscard]] LocalSurface at(std::size_t place, std::span<const Neighbour> neighbours) {
-    take(place, neighbours);
-    if (!(weight_ > 0.0)) return {};
-    const Eigen::Vector3d offset = sum_offset_ / weight_;
-    const Eigen::Vector3d slope = sum_slope_ / weight_;
-    double change = 0.0, extent2 = 0.0;
-    for (const Sample& sample : samples_) {
-      change += sample.weight * (sample.slope - slope).dot(sample.offset - offset);
-      extent2 += sample.weight * (sample.offset - offset).squaredNorm();
-    }
-    const double height = sum_height_ / weight_ - slope.dot(offset);
-    if (!(extent2 > 0.0)) return {static_cast<float>(height), 0.0F, 0.0F};
-    const double lever = 0.5 * ((sum_spread2_ + extent2) / weight_ - offset.squaredNorm());
-    return {static_cast<float>(height), static_cast<float>(change / extent2), static_cast<float>(lever)};
+  SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes) : tree_(tree), planes_(planes) {
+    for (auto* vectors : {&normals_, &offsets_})
+      vectors->fill({Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
+    for (auto* lanes : {&heights_, &spreads2_})
+      lanes->fill(Lanes::Zero());
   }
 
-  /// The height of the surface at a point, by the heights at its neighbours. A curvature from 17 planes is
-  /// still too noisy, so it is averaged over them, and trusted as far as it is more than their disagreement.
-  [[nodiscard]] double height(std::size_t place, std::span<const Neighbour> neighbours,
-                              std::span<const LocalSurface> surfaces) {
-    sort(place, neighbours);
-    const Eigen::Vector3d point = tree_.point(place);
-    const Eigen::Vector3d up = planes_[place].normal.cast<double>();
-    double weight = 0.0, height = 0.0, lever = 0.0, curvature = 0.0, curvature2 = 0.0;
-    Eigen::Vector3d offset = Eigen::Vector3d::Zero(), slope = Eigen::Vector3d::Zero();
-    for (const std::uint64_t entry : order_) {
-      const std::size_t other = entry & 0xffffffff;
-      const Eigen::Vector3d normal = planes_[other].normal.cast<double>();
-      const double alike = normal.dot(up);
-      if (!(alike > kLeastAlike)) continue;
-      const LocalSurface& surface = surfaces[other];
-      const double w = alike * alike * alike * alike;
-      const Eigen::Vector3d away = tree_.point(other) + static_cast<double>(surface.height) * normal - point;
-      const double up_there = away.dot(up);
-      const Eigen::Vector3d across = away - up_there * up;
-      weight += w;
-      height += w * up_there;
-      offset += w * across;
-      slope += w * (up - normal / alike);
-      lever += w * (static_cast<double>(surface.lever) + 0.5 * across.squaredNorm());
-      curvature += w * static_cast<double>(surface.curvature);
-      curvature2 += w * static_cast<double>(surface.curvature) * static_cast<double>(surface.curvature);
+  /// Of the surface from the point, along the normal of its plane, m.
+  [[nodiscard]] double height(std::size_t place, std::span<const Neighbour> neighbours) {
+    const LocalPlane& own = planes_[place];
+    take(place, own, neighbours);
+    const Eigen::Vector3f n = own.normal, e = n.unitOrthogonal(), f = n.cross(e);
+    ExactSum w_, h_, spread_, u_, v_, su_, sv_, uu_, uv_, vv_, usu_, vsv_, cross_, ss_;
+    for (std::size_t g = 0; g < groups_of(neighbours.size() + 1); ++g) {
+      const LanesOfVectors& normal = normals_[g];
+      const Lanes cosine = normal.dot(n);
+      // 1 where it is above, by however little, else 0.
+      const Lanes is_alike = ((cosine - kLeastAlike) * 1e30F).max(0.0F).min(1.0F);
+      const Lanes alike = cosine.max(kLeastAlike);
+      const Lanes per_alike = 1.0F / alike;
+      const LanesOfVectors at{offsets_[g].x + heights_[g] * normal.x, offsets_[g].y + heights_[g] * normal.y,
+                              offsets_[g].z + heights_[g] * normal.z};
+      const Lanes h = at.dot(n), u = at.dot(e), v = at.dot(f);
+      const Lanes su = -normal.dot(e) * per_alike, sv = -normal.dot(f) * per_alike;
+      const Lanes uu = u * u, vv = v * v;
+      const Lanes w = is_alike * (alike * alike) * (alike * alike);
+      w_.add(w), h_.add(w * h), spread_.add(w * spreads2_[g]);
+      u_.add(w * u), v_.add(w * v), su_.add(w * su), sv_.add(w * sv);
+      uu_.add(w * uu), uv_.add(w * u * v), vv_.add(w * vv);
+      usu_.add(w * u * su), vsv_.add(w * v * sv), cross_.add(w * (u * sv + v * su));
+      ss_.add(w * (su * su + sv * sv));
     }
+    const double weight = w_.value();
     if (!(weight > 0.0)) return 0.0;
-    offset /= weight;
-    const double mean = curvature / weight;
-    const double doubt2 = kCaution * std::max(curvature2 / weight - mean * mean, 0.0) / weight;
-    const double sure2 = mean * mean * mean * mean;
-    const double trust = sure2 > 0.0 ? sure2 / (sure2 + doubt2 * doubt2) : 0.0;
-    return height / weight - slope.dot(offset) / weight -
-           trust * mean * (lever / weight - offset.squaredNorm());
+    const auto mean = [&](const ExactSum& sum) { return sum.value() / weight; };
+    const double u = mean(u_), v = mean(v_), su = mean(su_), sv = mean(sv_);
+    const double uu = mean(uu_) - u * u, uv = mean(uv_) - u * v, vv = mean(vv_) - v * v;
+    const double usu = mean(usu_) - u * su, vsv = mean(vsv_) - v * sv, cross = mean(cross_) - u * sv - v * su;
+    const double ss = mean(ss_) - su * su - sv * sv;
+    const double flat = mean(h_) - su * u - sv * v;
+    // The slopes that go with a curvature: su = a u + b v, sv = b u + d v, by least squares.
+    const double extent2 = uu + vv, area = uu * vv - uv * uv;
+    if (!(area > 1e-6 * extent2 * extent2)) return flat * static_cast<double>(unit_);
+    const double b = (cross * uu * vv - uv * (vv * usu + uu * vsv)) / (extent2 * area);
+    const double a = (usu - uv * b) / uu, d = (vsv - uv * b) / vv;
+    const double rest = std::max(ss - a * usu - b * cross - d * vsv, 0.0);
+    const double curvature2 = 0.25 * (a + d) * (a + d);
+    const double error2 = kCaution * rest / (extent2 * weight);
+    const double trust = curvature2 > 0.0 ? curvature2 * curvature2 / (curvature2 * curvature2 + error2 * error2) : 0.0;
+    const double bend = 0.5 * (0.5 * mean(spread_) * (a + d) + a * uu + 2.0 * b * uv + d * vv);
+    return (flat - trust * bend) * static_cast<double>(unit_);
   }
 
  private:
-  struct Sample {
-    double weight;
-    Eigen::Vector3d offset;  // from the point, across its normal
-    Eigen::Vector3d slope;
-  };
+  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kGroups = (kMostPlanes + 1) / kLanes;
 
-  /// In the order of the rays, whatever that of the tree is.
-  void sort(std::size_t place, std::span<const Neighbour> neighbours) {
-    order_.clear();
-    order_.push_back(std::uint64_t{tree_.index(place)} << 32 | place);
-    for (const Neighbour& neighbour : neighbours)
-      order_.push_back(std::uint64_t{tree_.index(neighbour.place)} << 32 | neighbour.place);
-    std::sort(order_.begin(), order_.end());
-  }
-
-  void take(std::size_t place, std::span<const Neighbour> neighbours) {
-    sort(place, neighbours);
-    samples_.clear();
-    weight_ = sum_height_ = sum_spread2_ = 0.0;
-    sum_offset_.setZero();
-    sum_slope_.setZero();
+  /// The planes of the point and its neighbours.
+  void take(std::size_t place, const LocalPlane& own, std::span<const Neighbour> neighbours) {
+    constexpr std::uint32_t kExponent = 0x7f800000;
+    unit_ = std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::max(own.reach, kLeastUnit)) & kExponent);
+    const float per_unit = 1.0F / unit_;
     const Eigen::Vector3d point = tree_.point(place);
-    const Eigen::Vector3d up = planes_[place].normal.cast<double>();
-    for (const std::uint64_t entry : order_) {
-      const std::size_t other = entry & 0xffffffff;
+    // What fills up the last group has no normal, and so no weight.
+    normals_[groups_of(neighbours.size() + 1) - 1] = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
+    std::size_t count = 0;
+    const auto add = [&](std::size_t other) {
       const LocalPlane& plane = planes_[other];
-      const Eigen::Vector3d normal = plane.normal.cast<double>();
-      const double alike = normal.dot(up);
-      if (!(alike > kLeastAlike)) continue;
-      const double weight = alike * alike * alike * alike;
-      const Eigen::Vector3d away = tree_.point(other) + static_cast<double>(plane.height) * normal - point;
-      const double height = away.dot(up);
-      samples_.push_back({weight, away - height * up, up - normal / alike});
-      weight_ += weight;
-      sum_height_ += weight * height;
-      sum_spread2_ += weight * static_cast<double>(plane.spread2);
-      sum_offset_ += weight * samples_.back().offset;
-      sum_slope_ += weight * samples_.back().slope;
-    }
+      const Eigen::Vector3d away = tree_.point(other) - point;
+      put(normals_, count, plane.normal);
+      put(offsets_, count, away.cast<float>() * per_unit);
+      put(heights_, count, plane.height * per_unit);
+      put(spreads2_, count, plane.spread2 * (per_unit * per_unit));
+      ++count;
+    };
+    add(place);
+    for (const Neighbour& neighbour : neighbours)
+      add(neighbour.place);
   }
 
-  // The curvatures of neighbours come from much the same planes, and their mean is less sure than it looks.
-  static constexpr double kCaution = 14.0;
-  static constexpr double kLeastAlike = 0.3;  // cosine between normals of one surface
+  static std::size_t groups_of(std::size_t points) { return (points + kLanes - 1) / kLanes; }
+  static void put(std::array<Lanes, kGroups>& lanes, std::size_t i, float value) {
+    lanes[i / kLanes][static_cast<Eigen::Index>(i % kLanes)] = value;
+  }
+  static void put(std::array<LanesOfVectors, kGroups>& lanes, std::size_t i, const Eigen::Vector3f& value) {
+    const auto lane = static_cast<Eigen::Index>(i % kLanes);
+    LanesOfVectors& group = lanes[i / kLanes];
+    group.x[lane] = value.x(), group.y[lane] = value.y(), group.z[lane] = value.z();
+  }
+
+  // The planes share most of their points, and so their mean is less sure than it looks.
+  static constexpr double kCaution = 16.0;
+  static constexpr float kLeastAlike = 0.3F;  // cosine between normals of one surface
+  static constexpr float kLeastUnit = 1e-9F;  // m
 
   const PointTree& tree_;
   std::span<const LocalPlane> planes_;
-  std::vector<std::uint64_t> order_;  // index and place of the point and its neighbours
-  std::vector<Sample> samples_;
-  double weight_ = 0.0, sum_height_ = 0.0, sum_spread2_ = 0.0;
-  Eigen::Vector3d sum_offset_, sum_slope_;
+  float unit_ = 1.0F;  // m, a power of two, at most the reach
+  std::array<LanesOfVectors, kGroups> normals_, offsets_;
+  std::array<Lanes, kGroups> heights_, spreads2_;
 };
 
 using Move = Eigen::Vector3f;  // m
 
-std::span<const Neighbour> neighbours_of(NeighbourSearch& search, std::size_t place,
-                                         const LocalPlane& plane) {
-  return search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
-}
-
-/// By the plane's height: along the ray where that is not too much aslant, else along the normal.
-Move move_of(const LocalPlane& plane, const PackedDirection& to_sensor) {
+/// To a height above the plane's point: along the ray where that is not too much aslant, else along the normal.
+Move move_of(const LocalPlane& plane, double height, const PackedDirection& to_sensor) {
   constexpr double kFacing = 0.3;  // cosine from which on the ray is better than the normal
-  if (plane.normal.isZero()) return Move::Zero();
   const Eigen::Vector3d normal = plane.normal.cast<double>();
   const Eigen::Vector3d ray = unpack_direction(to_sensor).normalized();
   const double facing = ray.dot(normal);
   const bool along_ray = facing > kFacing;
-  const double height = plane.height, most = plane.reach;
+  const double most = plane.reach;
   const double distance = std::clamp(along_ray ? height / facing : height, -most, most);
   return (distance * (along_ray ? ray : normal)).cast<float>();
 }
@@ -176,31 +189,18 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place)
       planes[place] =
-          plane_of(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 3.0, true}));
+          plane_of(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / (1.0 + kWider), true}));
   });
-  std::vector<LocalSurface> surfaces(tree.size());
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    SurfaceFit fit(tree, planes);
-    for (std::size_t place = begin; place < end; ++place) {
-      if (planes[place].normal.isZero()) continue;
-      surfaces[place] = fit.at(place, neighbours_of(search, place, planes[place]));
-    }
-  });
-  // Only the normals of other planes matter from here on: the distance to the surface takes the place of the
-  // height.
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    SurfaceFit fit(tree, planes);
-    for (std::size_t place = begin; place < end; ++place) {
-      LocalPlane& plane = planes[place];
-      if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
-      plane.height = static_cast<float>(fit.height(place, neighbours_of(search, place, plane), surfaces));
-    }
-  });
-  surfaces = std::vector<LocalSurface>();
   std::vector<Move> moves(tree.size(), Move::Zero());
-  parallel_for(context, tree.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place)
-      moves[tree.index(place)] = move_of(planes[place], tree.to_sensor(place));
+  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    SurfaceFit fit(tree, planes);
+    for (std::size_t place = begin; place < end; ++place) {
+      const LocalPlane& plane = planes[place];
+      if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
+      const auto neighbours = search.nearest_facing(place, kMostPlanes, kWider * static_cast<double>(plane.reach),
+                                                    plane.normal.cast<double>());
+      moves[tree.index(place)] = move_of(plane, fit.height(place, neighbours), tree.to_sensor(place));
+    }
   });
   return moves;
 }
@@ -208,9 +208,9 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
 }  // namespace
 
 StreamCounts smooth_rays(const Context& context, RaySource& source, RaySink& sink) {
-  // The surface at a point depends on the curvature at its neighbours, which depends on the planes of theirs.
+  // The surface at a point depends on the planes of its neighbours, and these on theirs.
   const BlockNeeds needs{.bytes_per_record = 90,
-                         .reach = [](const EndSample& sample) { return 3.0 * neighbour_reach(sample); }};
+                         .reach = [](const EndSample& sample) { return (1.0 + kWider) * neighbour_reach(sample); }};
   return run_blocks<SeenPoint, Move>(context, source, sink, needs, seen_point, smooth_block,
                                      [](RayCloud& rays, std::span<const Move> moves) {
                                        std::size_t next = 0;

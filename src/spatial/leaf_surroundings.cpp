@@ -156,7 +156,7 @@ float LeafSurroundings::bound_by_others(std::size_t count) const {
   return least * 1.00001F + 2.0F * slack_;
 }
 
-void LeafSurroundings::collect(std::size_t, float within, const Eigen::Vector3d* side) {
+void LeafSurroundings::collect(float within, const Eigen::Vector3d* side) {
   const float within2 = within * within * 1.00001F;
   const std::size_t end = rounded_up(size_);
   std::size_t count = 0;
@@ -226,42 +226,60 @@ std::span<const Neighbour> LeafSurroundings::exact(std::size_t place, std::size_
 }
 
 std::optional<std::span<const Neighbour>> LeafSurroundings::nearest(std::size_t place, std::size_t count,
-                                                                    double reach, const Eigen::Vector3d* side) {
+                                                                    double reach,
+                                                                    const Eigen::Vector3d* side) {
   const std::size_t self = place - leaf_.first;
   measure(self);
   const bool reach_is_known = reach <= reach_;
   const float whole = static_cast<float>(std::min(reach, reach_)) * 1.000001F + 2.0F * slack_;
-  float within = std::min(whole, side == nullptr ? bound_by_others(count) : kFar);
-  collect(self, within, side);
-  if (found_count_ < count && within < whole) {
-    within = whole;
-    collect(self, within, side);
+  const float within = std::min(whole, side == nullptr ? bound_by_others(count) : kFar);
+  collect(within, side);
+  if (found_count_ < count && !reach_is_known) {
+    find_bound(count, side);
+    return {};
   }
-  if (found_count_ < count && !reach_is_known) return {};
-  if (found_count_ > count) {
-    const float nearest =
-        std::sqrt(distance2_of_nearest(count, within * within * 1.00001F)) * 1.00001F + 2.0F * slack_;
-    const float nearest2 = nearest * nearest * 1.00001F;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < found_count_; ++i) {
-      const float d = found2_[i];
-      found_place_[kept] = found_place_[i];
-      kept += d <= nearest2 ? 1 : 0;
-    }
-    found_count_ = kept;
-  }
+  if (found_count_ > count) drop_further(count, within);
   const std::span<const Neighbour> result = exact(place, count, reach * reach);
-  if (result.size() < count) return reach_is_known ? std::optional(result) : std::nullopt;
+  if (result.size() < count) return result;
   double furthest2 = 0.0;
   for (const Neighbour& neighbour : result)
     furthest2 = std::max(furthest2, neighbour.distance2);
-  if (!reach_is_known && !(furthest2 <= reach_ * reach_)) return {};
+  if (!reach_is_known && !(furthest2 <= reach_ * reach_)) {
+    bound2_ = furthest2;
+    return {};
+  }
   if (side == nullptr) {
     if (solved_count_ != count) solved_.fill(kFar);
     solved_count_ = count;
     solved_[self] = static_cast<float>(std::sqrt(furthest2)) * 1.00001F;
   }
   return result;
+}
+
+/// Of those found, a little more than the nearest stay: those that may be.
+void LeafSurroundings::drop_further(std::size_t count, float within) {
+  const float nearest = std::sqrt(distance2_of_nearest(count, within * within * 1.00001F)) * 1.00001F + 2.0F * slack_;
+  const float nearest2 = nearest * nearest * 1.00001F;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found_count_; ++i) {
+    const float d = found2_[i];
+    found_place_[kept] = found_place_[i];
+    kept += d <= nearest2 ? 1 : 0;
+  }
+  found_count_ = kept;
+}
+
+/// From all that was gathered, how far the nearest are at most.
+void LeafSurroundings::find_bound(std::size_t count, const Eigen::Vector3d* side) {
+  bound2_ = std::numeric_limits<double>::infinity();
+  collect(1e9F, side);
+  if (found_count_ < count) return;
+  float furthest2 = 0.0F;
+  for (std::size_t i = 0; i < found_count_; ++i)
+    furthest2 = std::max(furthest2, found2_[i]);
+  const double bound =
+      std::sqrt(static_cast<double>(distance2_of_nearest(count, furthest2))) * 1.00001 + 2.0 * static_cast<double>(slack_);
+  bound2_ = bound * bound;
 }
 
 }  // namespace ray

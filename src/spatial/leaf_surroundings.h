@@ -27,6 +27,8 @@ class LeafSurroundings {
   /// The nearest, as NeighbourSearch has it; nothing if they might lie outside of what was gathered. Precondition: has(place).
   std::optional<std::span<const Neighbour>> nearest(std::size_t place, std::size_t count, double reach,
                                                     const Eigen::Vector3d* side);
+  /// After a search that came to nothing: no point further than that (m², squared) is among the nearest.
+  [[nodiscard]] double bound2() const { return bound2_; }
 
  private:
   static constexpr std::size_t kRoom = 1024;  // a multiple of 32
@@ -36,7 +38,9 @@ class LeafSurroundings {
   bool gather_leaf(const TreeWalk::Leaf& leaf, float within2);
   void measure(std::size_t self);
   [[nodiscard]] float bound_by_others(std::size_t count) const;
-  void collect(std::size_t self, float within, const Eigen::Vector3d* side);
+  void collect(float within, const Eigen::Vector3d* side);
+  void drop_further(std::size_t count, float within);
+  void find_bound(std::size_t count, const Eigen::Vector3d* side);
   [[nodiscard]] std::size_t count_within(float distance2) const;
   [[nodiscard]] float distance2_of_nearest(std::size_t count, float within2);
   [[nodiscard]] std::span<const Neighbour> exact(std::size_t place, std::size_t count, double reach2);
@@ -54,6 +58,7 @@ class LeafSurroundings {
   // Of the points of the leaf for which all `solved_count_` nearest were found: how far those are.
   std::size_t solved_count_ = 0;
   alignas(32) std::array<float, kLeaf> solved_{};
+  double bound2_ = 0.0;
   // Of the search under way.
   alignas(32) Floats distance2_{};
   std::size_t found_count_ = 0;

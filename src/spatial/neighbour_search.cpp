@@ -21,17 +21,22 @@ class NeighbourSearch::Impl {
     if (count == 0) return {};
     if (walk_.go_to(place)) {
       around_.forget();
-      is_first_ = true;
+      // What the last search found within nearly all of a reach, this one will.
+      is_first_ = !(reach < kWide * last_radius_ && around_.gather(walk_, kWide * reach));
     }
     std::optional<std::span<const Neighbour>> found;
-    if (around_.has(place)) found = around_.nearest(place, count, reach, side);
+    double within2 = reach * reach;
+    if (around_.has(place)) {
+      found = around_.nearest(place, count, reach, side);
+      within2 = std::min(within2, around_.bound2());
+    }
     if (!found) {
-      const double within2 = side == nullptr ? within2_of(place, count) : kInfinity;
-      found = walk_.nearest(place, count, std::min(reach * reach, within2), side);
+      if (side == nullptr) within2 = std::min(within2, within2_of(place, count));
+      found = walk_.nearest(place, count, within2, side);
       if (is_first_ && found->size() == count) around_.gather(walk_, kWide * furthest(*found));
       is_first_ = false;
     }
-    if (side == nullptr) remember(place, count, *found);
+    remember(place, side == nullptr ? count : 0, *found);
     return *found;
   }
 
