@@ -36,19 +36,18 @@ constexpr double kWider = 1.6;
 /// Four points at a time.
 using Lanes = Eigen::Array4f;
 
-/// Sums of what single points add, as whole numbers of a small part of the unit: exact, and so the same in
-/// any order. One point adds no more than 32 units.
+/// Sums of what single points add, in small whole parts: exact, and so the same in any order.
 class ExactSum {
  public:
-  void add(const Lanes& values) {
-    constexpr float kMost = 32.0F;
-    const Lanes parts = values.min(kMost).max(-kMost) * kParts;  // all four at once, as it has a name
-    sum_ += parts.cast<std::int32_t>();
+  static constexpr float kParts = 0x1p20F;
+
+  /// Each less than 32 · kParts, and less than 64 points.
+  void add(const Lanes& parts) { sum_ += parts.cast<std::int32_t>(); }
+  [[nodiscard]] double value() const {
+    return static_cast<double>(sum_.cast<std::int64_t>().sum()) * (1.0 / static_cast<double>(kParts));
   }
-  [[nodiscard]] double value() const { return sum_.sum() * (1.0 / static_cast<double>(kParts)); }
 
  private:
-  static constexpr float kParts = 0x1p21F;
   Eigen::Array<std::int32_t, 4, 1> sum_ = Eigen::Array<std::int32_t, 4, 1>::Zero();
 };
 
@@ -78,7 +77,7 @@ class SurfaceFit {
     const LocalPlane& own = planes_[place];
     take(place, own, neighbours);
     const Eigen::Vector3f n = own.normal, e = n.unitOrthogonal(), f = n.cross(e);
-    ExactSum w_, h_, spread_, u_, v_, su_, sv_, uu_, uv_, vv_, usu_, vsv_, cross_, ss_;
+    std::array<ExactSum, 14> sums;
     for (std::size_t g = 0; g < groups_of(neighbours.size() + 1); ++g) {
       const LanesOfVectors& normal = normals_[g];
       const Lanes cosine = normal.dot(n);
@@ -90,14 +89,26 @@ class SurfaceFit {
                               offsets_[g].z + heights_[g] * normal.z};
       const Lanes h = at.dot(n), u = at.dot(e), v = at.dot(f);
       const Lanes su = -normal.dot(e) * per_alike, sv = -normal.dot(f) * per_alike;
-      const Lanes uu = u * u, vv = v * v;
-      const Lanes w = is_alike * (alike * alike) * (alike * alike);
-      w_.add(w), h_.add(w * h), spread_.add(w * spreads2_[g]);
-      u_.add(w * u), v_.add(w * v), su_.add(w * su), sv_.add(w * sv);
-      uu_.add(w * uu), uv_.add(w * u * v), vv_.add(w * vv);
-      usu_.add(w * u * su), vsv_.add(w * v * sv), cross_.add(w * (u * sv + v * su));
-      ss_.add(w * (su * su + sv * sv));
+      const Lanes w = is_alike * (alike * alike) * (alike * alike) * ExactSum::kParts;
+      const Lanes wu = w * u, wv = w * v, wsu = w * su, wsv = w * sv;
+      const std::array<Lanes, 14> parts{w,
+                                        w * h,
+                                        w * spreads2_[g],
+                                        wu,
+                                        wv,
+                                        wsu,
+                                        wsv,
+                                        wu * u,
+                                        wu * v,
+                                        wv * v,
+                                        wu * su,
+                                        wv * sv,
+                                        wu * sv + wv * su,
+                                        wsu * su + wsv * sv};
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        sums[i].add(parts[i]);
     }
+    const auto& [w_, h_, spread_, u_, v_, su_, sv_, uu_, uv_, vv_, usu_, vsv_, cross_, ss_] = sums;
     const double weight = w_.value();
     if (!(weight > 0.0)) return 0.0;
     const auto mean = [&](const ExactSum& sum) { return sum.value() / weight; };
@@ -114,7 +125,8 @@ class SurfaceFit {
     const double rest = std::max(ss - a * usu - b * cross - d * vsv, 0.0);
     const double curvature2 = 0.25 * (a + d) * (a + d);
     const double error2 = kCaution * rest / (extent2 * weight);
-    const double trust = curvature2 > 0.0 ? curvature2 * curvature2 / (curvature2 * curvature2 + error2 * error2) : 0.0;
+    const double trust =
+        curvature2 > 0.0 ? curvature2 * curvature2 / (curvature2 * curvature2 + error2 * error2) : 0.0;
     const double bend = 0.5 * (0.5 * mean(spread_) * (a + d) + a * uu + 2.0 * b * uv + d * vv);
     return (flat - trust * bend) * static_cast<double>(unit_);
   }
@@ -127,6 +139,7 @@ class SurfaceFit {
   void take(std::size_t place, const LocalPlane& own, std::span<const Neighbour> neighbours) {
     constexpr std::uint32_t kExponent = 0x7f800000;
     unit_ = std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::max(own.reach, kLeastUnit)) & kExponent);
+    constexpr float kMostHeight = 1.0F, kMostSpread2 = 16.0F;  // so that the sums have room
     const float per_unit = 1.0F / unit_;
     const Eigen::Vector3d point = tree_.point(place);
     // What fills up the last group has no normal, and so no weight.
@@ -137,8 +150,8 @@ class SurfaceFit {
       const Eigen::Vector3d away = tree_.point(other) - point;
       put(normals_, count, plane.normal);
       put(offsets_, count, away.cast<float>() * per_unit);
-      put(heights_, count, plane.height * per_unit);
-      put(spreads2_, count, plane.spread2 * (per_unit * per_unit));
+      put(heights_, count, std::clamp(plane.height * per_unit, -kMostHeight, kMostHeight));
+      put(spreads2_, count, std::min(plane.spread2 * (per_unit * per_unit), kMostSpread2));
       ++count;
     };
     add(place);
@@ -170,7 +183,8 @@ class SurfaceFit {
 
 using Move = Eigen::Vector3f;  // m
 
-/// To a height above the plane's point: along the ray where that is not too much aslant, else along the normal.
+/// To a height above the plane's point: along the ray where that is not too much aslant, else along the
+/// normal.
 Move move_of(const LocalPlane& plane, double height, const PackedDirection& to_sensor) {
   constexpr double kFacing = 0.3;  // cosine from which on the ray is better than the normal
   const Eigen::Vector3d normal = plane.normal.cast<double>();
@@ -197,8 +211,8 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
     for (std::size_t place = begin; place < end; ++place) {
       const LocalPlane& plane = planes[place];
       if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
-      const auto neighbours = search.nearest_facing(place, kMostPlanes, kWider * static_cast<double>(plane.reach),
-                                                    plane.normal.cast<double>());
+      const auto neighbours = search.nearest_facing(
+          place, kMostPlanes, kWider * static_cast<double>(plane.reach), plane.normal.cast<double>());
       moves[tree.index(place)] = move_of(plane, fit.height(place, neighbours), tree.to_sensor(place));
     }
   });
@@ -209,8 +223,9 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
 
 StreamCounts smooth_rays(const Context& context, RaySource& source, RaySink& sink) {
   // The surface at a point depends on the planes of its neighbours, and these on theirs.
-  const BlockNeeds needs{.bytes_per_record = 90,
-                         .reach = [](const EndSample& sample) { return (1.0 + kWider) * neighbour_reach(sample); }};
+  const BlockNeeds needs{.bytes_per_record = 90, .reach = [](const EndSample& sample) {
+                           return (1.0 + kWider) * neighbour_reach(sample);
+                         }};
   return run_blocks<SeenPoint, Move>(context, source, sink, needs, seen_point, smooth_block,
                                      [](RayCloud& rays, std::span<const Move> moves) {
                                        std::size_t next = 0;

@@ -82,7 +82,8 @@ bool LeafSurroundings::gather(const TreeWalk& walk, double reach) {
       double apart2 = 0.0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double apart = std::max(
-            std::max(pair.min[axis][at] - own.max[axis][side], own.min[axis][side] - pair.max[axis][at]), 0.0);
+            std::max(pair.min[axis][at] - own.max[axis][side], own.min[axis][side] - pair.max[axis][at]),
+            0.0);
         apart2 += apart * apart;
       }
       if (apart2 > static_cast<double>(within2)) continue;
@@ -144,8 +145,8 @@ float LeafSurroundings::bound_by_others(std::size_t count) const {
 #ifdef __SSE2__
   __m128 least4 = _mm_set1_ps(kFar);
   for (std::size_t i = 0; i < kLeaf; i += 4)
-    least4 = _mm_min_ps(
-        least4, _mm_add_ps(_mm_sqrt_ps(_mm_load_ps(&distance2_[i])), _mm_load_ps(&solved_[i])));
+    least4 =
+        _mm_min_ps(least4, _mm_add_ps(_mm_sqrt_ps(_mm_load_ps(&distance2_[i])), _mm_load_ps(&solved_[i])));
   alignas(16) std::array<float, 4> lanes;
   _mm_store_ps(lanes.data(), least4);
   least = std::min(std::min(lanes[0], lanes[1]), std::min(lanes[2], lanes[3]));
@@ -188,8 +189,8 @@ float LeafSurroundings::distance2_of_nearest(std::size_t count, float within2) {
   float low = 0.0F, high = within2;
   std::size_t low_count = 0, high_count = found_count_;
   for (int guess = 0; guess < kGuesses && high_count != count; ++guess) {
-    const float part = (static_cast<float>(count - low_count) + 0.5F) /
-                       (static_cast<float>(high_count - low_count) + 1.0F);
+    const float part =
+        (static_cast<float>(count - low_count) + 0.5F) / (static_cast<float>(high_count - low_count) + 1.0F);
     const float at = low + (high - low) * part;
     const std::size_t within = count_within(at);
     if (within >= count) {
@@ -258,7 +259,8 @@ std::optional<std::span<const Neighbour>> LeafSurroundings::nearest(std::size_t 
 
 /// Of those found, a little more than the nearest stay: those that may be.
 void LeafSurroundings::drop_further(std::size_t count, float within) {
-  const float nearest = std::sqrt(distance2_of_nearest(count, within * within * 1.00001F)) * 1.00001F + 2.0F * slack_;
+  const float nearest =
+      std::sqrt(distance2_of_nearest(count, within * within * 1.00001F)) * 1.00001F + 2.0F * slack_;
   const float nearest2 = nearest * nearest * 1.00001F;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found_count_; ++i) {
@@ -277,8 +279,8 @@ void LeafSurroundings::find_bound(std::size_t count, const Eigen::Vector3d* side
   float furthest2 = 0.0F;
   for (std::size_t i = 0; i < found_count_; ++i)
     furthest2 = std::max(furthest2, found2_[i]);
-  const double bound =
-      std::sqrt(static_cast<double>(distance2_of_nearest(count, furthest2))) * 1.00001 + 2.0 * static_cast<double>(slack_);
+  const double bound = std::sqrt(static_cast<double>(distance2_of_nearest(count, furthest2))) * 1.00001 +
+                       2.0 * static_cast<double>(slack_);
   bound2_ = bound * bound;
 }
 

@@ -20,11 +20,12 @@ class LeafSurroundings {
   void forget() { leaf_.count = 0; }
   [[nodiscard]] bool has(std::size_t place) const { return place - leaf_.first < leaf_.count; }
 
-  /// The points within `reach` (m) of the box of the leaf at which `walk` is. False, and forgotten, if there are
-  /// too many, or too far apart for single precision.
+  /// The points within `reach` (m) of the box of the leaf at which `walk` is. False, and forgotten, if there
+  /// are too many, or too far apart for single precision.
   bool gather(const TreeWalk& walk, double reach);
 
-  /// The nearest, as NeighbourSearch has it; nothing if they might lie outside of what was gathered. Precondition: has(place).
+  /// The nearest, as NeighbourSearch has it; nothing if they might lie outside of what was gathered.
+  /// Precondition: has(place).
   std::optional<std::span<const Neighbour>> nearest(std::size_t place, std::size_t count, double reach,
                                                     const Eigen::Vector3d* side);
   /// After a search that came to nothing: no point further than that (m², squared) is among the nearest.

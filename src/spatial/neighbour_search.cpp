@@ -1,7 +1,7 @@
-#include <raycloud/spatial/neighbour_search.h>
-
 #include "leaf_surroundings.h"
 #include "tree_walk.h"
+
+#include <raycloud/spatial/neighbour_search.h>
 
 #include <algorithm>
 #include <cassert>
