@@ -21,8 +21,8 @@ class NeighbourSearch::Impl {
     if (count == 0) return {};
     if (walk_.go_to(place)) {
       around_.forget();
-      // What the last search found within nearly all of a reach, this one will.
-      is_first_ = !(reach < kWide * last_radius_ && around_.gather(walk_, kWide * reach));
+      // Who says how far it is, to about what was found last, knows.
+      is_first_ = !(reach < kWide * last_radius_ && around_.gather(walk_, kWideOfReach * reach));
     }
     std::optional<std::span<const Neighbour>> found;
     double within2 = reach * reach;
@@ -64,6 +64,7 @@ class NeighbourSearch::Impl {
 
   // Most points of a leaf have their neighbours within so many times the distance of those of its first.
   static constexpr double kWide = 1.4;
+  static constexpr double kWideOfReach = 1.3;
 
   const PointTree& tree_;
   TreeWalk walk_;
