@@ -1,5 +1,6 @@
 #include "leaf_surroundings.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,8 +21,14 @@ inline std::uint32_t bits_within(const float* values, float bound) {
   std::uint32_t bits = 0;
 #ifdef __SSE2__
   const __m128 most = _mm_set1_ps(bound);
-  for (std::size_t i = 0; i < kStep; i += 4)
-    bits |= static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(_mm_load_ps(values + i), most))) << i;
+  const auto within = [&](std::size_t i) {
+    return _mm_castps_si128(_mm_cmple_ps(_mm_load_ps(values + i), most));
+  };
+  for (std::size_t i = 0; i < kStep; i += 16) {
+    const __m128i low = _mm_packs_epi32(within(i), within(i + 4));
+    const __m128i high = _mm_packs_epi32(within(i + 8), within(i + 12));
+    bits |= static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(low, high))) << i;
+  }
 #else
   for (std::size_t i = 0; i < kStep; ++i)
     bits |= std::uint32_t{values[i] <= bound} << i;
@@ -79,20 +86,19 @@ bool LeafSurroundings::gather(const TreeWalk& walk, double reach) {
       const std::uint32_t node = open[--count];
       const PointTree::Pair& pair = tree_.pairs_[node / 2];
       const std::size_t at = node % 2;
-      double apart2 = 0.0;
+      const std::uint32_t parts = pair.parts[at];
+      if (parts == 0) {
+        if (!gather_leaf({pair.first[at], pair.count[at], node}, within2)) return false;
+        continue;
+      }
+      Eigen::Array2d apart2 = Eigen::Array2d::Zero();
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double apart = std::max(
-            std::max(pair.min[axis][at] - own.max[axis][side], own.min[axis][side] - pair.max[axis][at]),
-            0.0);
-        apart2 += apart * apart;
+        const Eigen::Map<const Eigen::Array2d> min(tree_.pairs_[parts].min[axis].data());
+        const Eigen::Map<const Eigen::Array2d> max(tree_.pairs_[parts].max[axis].data());
+        apart2 += (min - own.max[axis][side]).max(own.min[axis][side] - max).max(0.0).square();
       }
-      if (apart2 > static_cast<double>(within2)) continue;
-      if (const std::uint32_t parts = pair.parts[at]) {
-        open[count++] = 2 * parts + 1;
-        open[count++] = 2 * parts;
-      } else if (!gather_leaf({pair.first[at], pair.count[at], node}, within2)) {
-        return false;
-      }
+      for (std::uint32_t part = 0; part < 2; ++part)
+        if (apart2[part] <= static_cast<double>(within2)) open[count++] = 2 * parts + part;
     }
   }
   for (std::size_t i = size_; i < rounded_up(size_); ++i)
@@ -105,16 +111,13 @@ bool LeafSurroundings::gather(const TreeWalk& walk, double reach) {
 /// Adds the points of a leaf that are near enough to the box. False if there is no room.
 bool LeafSurroundings::gather_leaf(const TreeWalk::Leaf& leaf, float within2) {
   if (size_ + kLeaf > kRoom) return false;
-  alignas(16) std::array<float, kLeaf> x{}, y{}, z{}, distance2;
+  using Values = Eigen::Array<float, kLeaf, 1>;
+  Values x = Values::Zero(), y = Values::Zero(), z = Values::Zero();
   relative(tree_.x_.data() + leaf.first, leaf.count, middle_[0], x.data());
   relative(tree_.y_.data() + leaf.first, leaf.count, middle_[1], y.data());
   relative(tree_.z_.data() + leaf.first, leaf.count, middle_[2], z.data());
-  for (std::size_t i = 0; i < kLeaf; ++i) {
-    const float dx = std::max(std::abs(x[i]) - half_[0], 0.0F);
-    const float dy = std::max(std::abs(y[i]) - half_[1], 0.0F);
-    const float dz = std::max(std::abs(z[i]) - half_[2], 0.0F);
-    distance2[i] = dx * dx + dy * dy + dz * dz;
-  }
+  const Values distance2 = (x.abs() - half_[0]).max(0.0F).square() + (y.abs() - half_[1]).max(0.0F).square() +
+                           (z.abs() - half_[2]).max(0.0F).square();
   std::uint32_t near = within2 < kFar ? bits_within(distance2.data(), within2) : ~std::uint32_t{0};
   if (leaf.count < kLeaf) near &= (std::uint32_t{1} << leaf.count) - 1;
   for (; near != 0; near &= near - 1) {
