@@ -4,6 +4,10 @@
 #include <bit>
 #include <cstdint>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 namespace ray {
 namespace {
 
@@ -13,7 +17,15 @@ class ExactSum {
   static constexpr float kParts = 0x1p20F;
 
   /// Each less than 32 · kParts, and less than 64 points.
-  void add(const Lanes& parts) { sum_ += parts.cast<std::int32_t>(); }
+  void add(const Lanes& parts) {
+#ifdef __SSE2__
+    _mm_store_si128(reinterpret_cast<__m128i*>(sum_.data()),
+                    _mm_add_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(sum_.data())),
+                                  _mm_cvttps_epi32(_mm_load_ps(parts.data()))));
+#else
+    sum_ += parts.cast<std::int32_t>();
+#endif
+  }
   [[nodiscard]] double value() const {
     return static_cast<double>(sum_.cast<std::int64_t>().sum()) * (1.0 / static_cast<double>(kParts));
   }
