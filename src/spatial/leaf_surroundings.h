@@ -17,12 +17,17 @@ class LeafSurroundings {
  public:
   explicit LeafSurroundings(const PointTree& tree) : tree_(tree) {}
 
-  void forget() { leaf_.count = 0; }
+  void forget() {
+    leaf_.count = 0;
+    reach_ = 0.0;
+  }
   [[nodiscard]] bool has(std::size_t place) const { return place - leaf_.first < leaf_.count; }
 
   /// The points within `reach` (m) of the box of the leaf at which `walk` is. False, and forgotten, if there
   /// are too many, or too far apart for single precision.
   bool gather(const TreeWalk& walk, double reach);
+  /// What was gathered is all within this distance of the leaf, m; 0 after forget.
+  [[nodiscard]] double reach() const { return reach_; }
 
   /// The nearest, as NeighbourSearch has it; nothing if they might lie outside of what was gathered.
   /// Precondition: has(place).

@@ -21,8 +21,13 @@ class NeighbourSearch::Impl {
     if (count == 0) return {};
     if (walk_.go_to(place)) {
       around_.forget();
+      is_first_ = true;
       // Who says how far it is, to about what was found last, knows.
-      is_first_ = !(reach < kWide * last_radius_ && around_.gather(walk_, kWideOfReach * reach));
+      reach_is_close_ = reach < kWide * last_radius_;
+    }
+    if (reach_is_close_ && reach > around_.reach() && (is_first_ || reach < kMuchWider * around_.reach())) {
+      reach_is_close_ = around_.gather(walk_, (is_first_ ? kWideOfReach : kWideOfWider) * reach);
+      is_first_ = false;
     }
     std::optional<std::span<const Neighbour>> found;
     double within2 = reach * reach;
@@ -64,12 +69,14 @@ class NeighbourSearch::Impl {
 
   // Most points of a leaf have their neighbours within so many times the distance of those of its first.
   static constexpr double kWide = 1.4;
-  static constexpr double kWideOfReach = 1.3;
+  static constexpr double kWideOfReach = 1.3, kWideOfWider = 1.15;
+  static constexpr double kMuchWider = 2.0;
 
   const PointTree& tree_;
   TreeWalk walk_;
   LeafSurroundings around_;
-  bool is_first_ = true;  // in the leaf
+  bool is_first_ = true;         // in the leaf
+  bool reach_is_close_ = false;  // to the distance of the neighbours
   // Of the last search for all; the count is 0 if it found fewer.
   std::size_t last_place_ = 0;
   std::size_t last_count_ = 0;
