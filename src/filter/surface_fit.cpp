@@ -122,7 +122,7 @@ double SurfaceFit::height(std::size_t place, std::span<const Neighbour> neighbou
     const Lanes per_alike = 1.0F / alike;
     const LanesOfVectors at{offsets_[g].x + heights_[g] * normal.x, offsets_[g].y + heights_[g] * normal.y,
                             offsets_[g].z + heights_[g] * normal.z};
-    const Lanes weight = is_alike * (alike.square() * alike).square().square() * ExactSum::kParts;
+    const Lanes weight = is_alike * alike.square().square().square() * ExactSum::kParts;
     sums.add(weight, at.dot(n), spreads2_[g], at.dot(along_u), at.dot(along_v),
              -normal.dot(along_u) * per_alike, -normal.dot(along_v) * per_alike);
   }
