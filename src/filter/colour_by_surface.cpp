@@ -55,7 +55,7 @@ SurfaceColour by_branches(const Surfel& surfel) {
 }
 
 /// The surface that is lit is the one that was seen.
-constexpr SurfelRule kLitSurfel{.neighbours = 16, .by_side = true};
+constexpr SurfelRule kLitSurfel{.neighbours = 16, .by_side = true, .past_rings = true};
 
 SurfaceRule rule_of(const Colouring& colouring) {
   if (std::holds_alternative<ColourByShape>(colouring)) return {{.neighbours = 20}, by_shape};

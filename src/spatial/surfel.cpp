@@ -83,6 +83,14 @@ bool is_flat(const Surfel& surfel, double flat = 0.1) {
   return surfel.variances[0] <= flat * surfel.variances[1];
 }
 
+/// No surface: what one beam left as it turned. Of a line, the normal may be any across it; of a sheet along
+/// the ray, the noise of the range makes it, and no beam ends on a surface that it sees from its edge.
+bool is_ring(const Surfel& surfel, const Eigen::Vector3d& ray) {
+  constexpr double kThin = 0.05;
+  constexpr double kEdgeOn = 0.1;  // cosine
+  return surfel.variances[1] < kThin * surfel.variances[2] || surfel.normal.dot(ray) < kEdgeOn * ray.norm();
+}
+
 /// From within 30 degrees of the direction that this point was seen from: one side.
 bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
   constexpr double kAlike = 0.87 * 32767.0 * 32767.0;
@@ -104,17 +112,15 @@ Eigen::Vector3d side_of_thick(NeighbourSearch& search, std::size_t place, const 
   return is_flat(surfel, kFlatEnough) ? surfel.normal : unpack_direction(search.tree().to_sensor(place));
 }
 
-}  // namespace
-
-Shape shape_of(const Surfel& surfel) {
-  const Eigen::Vector3d extents = surfel.variances.cwiseSqrt();
-  if (!(extents[2] > 0.0)) return {.sphericity = 1.0};
-  return {.sphericity = extents[0] / extents[2],
-          .cylindricality = (extents[2] - extents[1]) / extents[2],
-          .planarity = (extents[1] - extents[0]) / extents[2]};
+/// With more of the neighbours seen from the side of the ray, if these are a surface.
+Surfel past_ring(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, const Surfel& ring,
+                 const Eigen::Vector3d& ray) {
+  const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
+  const Surfel surfel = surfel_of(search.tree(), place, search.nearest_facing(place, wide, rule.reach, ray));
+  return is_flat(surfel) && !is_ring(surfel, ray) ? surfel : ring;
 }
 
-Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
+Surfel nearest_surfel(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
   const PointTree& tree = search.tree();
   const auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
   Surfel surfel = surfel_of(tree, place, neighbours);
@@ -134,6 +140,23 @@ Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& r
   const bool first_is_flatter =
       surfel.variances[0] * other.variances[1] < kClearly * other.variances[0] * surfel.variances[1];
   return of_side((first_is_flatter ? surfel : other).normal);
+}
+
+}  // namespace
+
+Shape shape_of(const Surfel& surfel) {
+  const Eigen::Vector3d extents = surfel.variances.cwiseSqrt();
+  if (!(extents[2] > 0.0)) return {.sphericity = 1.0};
+  return {.sphericity = extents[0] / extents[2],
+          .cylindricality = (extents[2] - extents[1]) / extents[2],
+          .planarity = (extents[1] - extents[0]) / extents[2]};
+}
+
+Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
+  const Surfel surfel = nearest_surfel(search, place, rule);
+  if (!rule.past_rings) return surfel;
+  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place));
+  return is_ring(surfel, ray) ? past_ring(search, place, rule, surfel, ray) : surfel;
 }
 
 }  // namespace ray

@@ -13,7 +13,7 @@ struct Neighbour {
   std::uint32_t place = 0;
 };
 
-/// Searches in a tree, with the memory that they need (about 40 kB); one for each thread. Made for all points
+/// Searches in a tree, with the memory that they need (about 50 kB); one for each thread. Made for all points
 /// one after the other, in the order of the tree: what is around a leaf is gathered once for its points.
 class NeighbourSearch {
  public:

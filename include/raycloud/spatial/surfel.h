@@ -36,8 +36,11 @@ struct Shape {
 struct SurfelRule {
   std::size_t neighbours = 16;                             ///< as many, besides the point itself
   double reach = std::numeric_limits<double>::infinity();  ///< m, no neighbour is further
-  bool by_side =
-      true;  ///< leave out neighbours seen from the other side, and take further ones in their place
+  /// Leave out neighbours seen from the other side, and take further ones in their place.
+  bool by_side = true;
+  /// Where the neighbours are the ends of one beam that turned, a line, or by the noise of its range a sheet
+  /// along the ray, take three times as many if these are a surface that faces the ray.
+  bool past_rings = false;
 };
 
 /// The surfel of the point at `place`. The nearest neighbours give a first normal; where some of them were

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace ray {
@@ -190,6 +191,33 @@ TEST(Surfel, SameBitsWhateverTheTree) {
       ASSERT_EQ(other[i].variances, expected[i].variances);
     }
   }
+}
+
+/// The rings that the beams of a spinning lidar draw on the ground, 40 cm apart, are sheets along the rays by
+/// the noise of their ranges.
+TEST(Surfel, LooksPastTheRingsOfASpinningLidar) {
+  const Eigen::Vector3d sensor(0.0, 0.0, 2.0);
+  const RandomStream random(5, "rings");
+  std::vector<SeenPoint> points;
+  for (int ring = 0; ring < 12; ++ring)
+    for (int step = 0; step < 1500; ++step) {
+      const double angle = (step + 0.01 * ring) * 2.0 * std::numbers::pi / 1500.0, radius = 8.0 + 0.4 * ring;
+      const Eigen::Vector3d ground(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+      const Eigen::Vector3d ray = (ground - sensor).normalized();
+      // Even, ±5 cm.
+      const Eigen::Vector3d end = ground + 0.1 * (random.uniform(points.size()) - 0.5) * ray;
+      points.push_back({end, pack_direction(sensor - end)});
+    }
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  const auto upright = [&](bool past_rings) {
+    std::size_t count = 0;
+    for (std::size_t place = 0; place < tree.size(); ++place)
+      count += surfel_at(search, place, {.past_rings = past_rings}).normal.z() > 0.99 ? 1 : 0;
+    return static_cast<double>(count) / static_cast<double>(tree.size());
+  };
+  EXPECT_LT(upright(false), 0.5);
+  EXPECT_GT(upright(true), 0.95);
 }
 
 TEST(Surfel, ShapesOfALineAPlaneAndABall) {
