@@ -40,13 +40,25 @@ struct BlockNeeds {
 
 namespace blocks {
 
-/// Takes every so many of the ends it is shown.
+/// Takes every so many of the ends of the bounded rays that it is shown.
 class EndSampler {
  public:
-  void add(const Eigen::Vector3d& end) {
-    if (sample_.bounded++ % stride_ != 0) return;
-    if (sample_.ends.size() == kMost) thin();
-    if ((sample_.bounded - 1) % stride_ == 0) sample_.ends.push_back(end);
+  /// `bounded` of the rays are.
+  void add(const RayCloud& rays, std::size_t bounded) {
+    const std::uint64_t before = sample_.bounded;
+    sample_.bounded += bounded;
+    std::size_t row = 0;
+    std::uint64_t passed = before;  // bounded rays in front of the row
+    while (next_ < sample_.bounded) {
+      if (sample_.ends.size() == kMost) thin();
+      if (bounded == rays.size())
+        row = static_cast<std::size_t>(next_ - before);
+      else
+        while (rays.bounded[row] == 0 || passed++ < next_)
+          ++row;
+      sample_.ends.push_back(rays.ends[row++]);
+      next_ += stride_;
+    }
   }
   [[nodiscard]] const EndSample& sample() const { return sample_; }
 
@@ -60,24 +72,18 @@ class EndSampler {
   }
   EndSample sample_;
   std::uint64_t stride_ = 1;
+  std::uint64_t next_ =
+      0;  ///< the bounded ray to be taken: stays so when thinned, being kMost strides from 0
 };
 
-/// Rays of a chunk on their way to their blocks.
-template <class Record>
-struct Extracted {
-  std::vector<Record> records;
-  std::vector<Eigen::Vector3d> ends;
-};
-
+/// The records of the bounded rays of a chunk.
 template <class Record, class Extract>
-Extracted<Record> extract_all(const RayCloud& rays, const Extract& extract) {
-  Extracted<Record> result;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.bounded[i] == 0) continue;
-    result.records.push_back(extract(rays, i));
-    result.ends.push_back(rays.ends[i]);
-  }
-  return result;
+std::vector<Record> extract_all(const RayCloud& rays, const Extract& extract) {
+  std::vector<Record> records;
+  records.reserve(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0) records.push_back(extract(rays, i));
+  return records;
 }
 
 /// The blocks and their results, on disk.
@@ -90,12 +96,14 @@ class SpilledBlocks {
         records_(cuts_.parts(), page_bytes(memory)),
         results_(cuts_.parts(), page_bytes(memory)) {}
 
-  void add(const Extracted<Record>& extracted) {
+  void add(const RayCloud& rays, const std::vector<Record>& records) {
     std::array<std::byte, sizeof(Record) + 1> bytes;
-    for (std::size_t i = 0; i < extracted.records.size(); ++i) {
-      std::memcpy(bytes.data(), &extracted.records[i], sizeof(Record));
-      const std::size_t own = cuts_.part_of(extracted.ends[i]);
-      cuts_.parts_near(extracted.ends[i], reach_, near_);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.bounded[i] == 0) continue;
+      std::memcpy(bytes.data(), &records[next++], sizeof(Record));
+      const std::size_t own = cuts_.part_of(rays.ends[i]);
+      cuts_.parts_near(rays.ends[i], reach_, near_);
       for (const std::uint32_t part : near_) {
         bytes.back() = std::byte{part == own};
         records_.append(part, bytes.data(), bytes.size());
@@ -166,7 +174,6 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
                         const Extract& extract, const Compute& compute, const Apply& apply) {
   // Eigen's vectors are not trivially copyable by the letter; their bytes are all there is to them.
   static_assert(std::is_trivially_destructible_v<Record> && std::is_trivially_destructible_v<Result>);
-  using Extracted = blocks::Extracted<Record>;
   constexpr std::size_t kMostBlocks = 1024;
   const auto extract_chunk = [&](const RayCloud& rays) { return blocks::extract_all<Record>(rays, extract); };
   const std::size_t memory = memory_budget(context);
@@ -177,14 +184,14 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
   const std::size_t fitting = memory / needs.bytes_per_record;
   if (source.info().ray_count)
     whole.records.reserve(std::min<std::uint64_t>(*source.info().ray_count, fitting));
-  stream(context, source, nullptr, extract_chunk, [&](const RayCloud&, const Extracted& extracted) {
-    for (const Eigen::Vector3d& end : extracted.ends)
-      sampler.add(end);
-    if (sampler.sample().bounded <= fitting)
-      whole.records.insert(whole.records.end(), extracted.records.begin(), extracted.records.end());
-    else
-      whole.records = std::vector<Record>();
-  });
+  stream(context, source, nullptr, extract_chunk,
+         [&](const RayCloud& rays, const std::vector<Record>& records) {
+           sampler.add(rays, records.size());
+           if (sampler.sample().bounded <= fitting)
+             whole.records.insert(whole.records.end(), records.begin(), records.end());
+           else
+             whole.records = std::vector<Record>();
+         });
   source.rewind();
   const EndSample& sample = sampler.sample();
   const double reach = needs.reach(sample);
@@ -199,7 +206,7 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
     spilled = std::make_unique<blocks::SpilledBlocks<Record, Result>>(sample, std::min(parts, kMostBlocks),
                                                                       reach, memory);
     stream(context, source, nullptr, extract_chunk,
-           [&](const RayCloud&, const Extracted& extracted) { spilled->add(extracted); });
+           [&](const RayCloud& rays, const std::vector<Record>& records) { spilled->add(rays, records); });
     source.rewind();
     spilled->compute(context, compute);
   }

@@ -151,11 +151,32 @@ TEST(RunBlocks, ManyRaysInOnePlaceAreNotCopiedToEveryBlock) {
   }
 }
 
+/// Ends numbered from `first` on along x, each behind an unbounded one if `mixed`.
+RayCloud numbered_ends(std::size_t first, std::size_t count, bool mixed) {
+  RayCloud rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mixed) {
+      rays.ends.emplace_back(-1.0, 0.0, 0.0);
+      rays.bounded.push_back(0);
+    }
+    rays.ends.emplace_back(static_cast<double>(first + i), 0.0, 0.0);
+    rays.bounded.push_back(1);
+  }
+  rays.starts.resize(rays.ends.size());
+  rays.times.resize(rays.ends.size());
+  rays.colours.resize(rays.ends.size());
+  return rays;
+}
+
 TEST(EndSampler, AnEvenSampleOfAnyNumber) {
+  std::size_t chunk = 1;
   for (const std::size_t count : {0UL, 1UL, 65536UL, 65537UL, 131072UL, 131073UL, 500000UL}) {
     blocks::EndSampler sampler;
-    for (std::size_t i = 0; i < count; ++i)
-      sampler.add({static_cast<double>(i), 0, 0});
+    for (std::size_t i = 0; i < count; i += chunk) {
+      chunk = chunk * 7 % 10007;
+      const std::size_t bounded = std::min(chunk, count - i);
+      sampler.add(numbered_ends(i, bounded, chunk % 2 == 0), bounded);
+    }
     const EndSample& sample = sampler.sample();
     EXPECT_EQ(sample.bounded, count);
     EXPECT_LE(sample.ends.size(), 65536U);
