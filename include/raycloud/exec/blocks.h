@@ -22,8 +22,16 @@ template <class Record>
 struct Block {
   std::vector<Record> records;
   std::vector<std::uint8_t> own;  ///< 0: around it, no result is wanted. Empty: all are its own
+  Eigen::AlignedBox3d box;        ///< all ends in it are its own; empty where all are anyway
 
   [[nodiscard]] bool is_own(std::size_t i) const { return own.empty() || own[i] != 0; }
+  /// Whether all records within the radius (m) of a place are its own for sure.
+  [[nodiscard]] bool has_only_own(const Eigen::Vector3d& place, double radius) const {
+    if (own.empty()) return true;
+    const Eigen::Array3d margin = radius * (1.0 + 1e-12) + place.array().abs() * 1e-15;
+    return (place.array() - margin > box.min().array()).all() &&
+           (place.array() + margin < box.max().array()).all();
+  }
 };
 
 /// An even sample of the ends of the bounded rays: the same for a cloud however it is read and worked on.
@@ -140,6 +148,7 @@ class SpilledBlocks {
   Block<Record> load(std::size_t part) {
     const std::size_t count = records_.size(part) / (sizeof(Record) + 1);
     Block<Record> block;
+    block.box = cuts_.box_of(part);
     block.records.resize(count);
     block.own.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
