@@ -36,6 +36,17 @@ void SpaceCuts::cut(std::size_t node, std::span<Eigen::Vector3d> sample) {
   cut(2 * node + 1, sample.subspan(middle));
 }
 
+Eigen::AlignedBox3d SpaceCuts::box_of(std::size_t part) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity));
+  for (std::size_t node = cuts_.size() + part; node > 1; node /= 2) {
+    const Cut& cut = cuts_[node / 2];
+    double& side = node % 2 == 0 ? box.max()[cut.axis] : box.min()[cut.axis];
+    side = node % 2 == 0 ? std::min(side, cut.at) : std::max(side, cut.at);
+  }
+  return box;
+}
+
 void SpaceCuts::parts_near(const Eigen::Vector3d& point, double reach,
                            std::vector<std::uint32_t>& found) const {
   found.clear();

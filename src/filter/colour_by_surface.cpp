@@ -106,20 +106,25 @@ std::vector<SurfaceColour> colour_block(const Context& context, Block<SeenPoint>
   const SurfelRule own_rule = within_reach(rule.surfel), lit_rule = within_reach(kLitSurfel);
   std::vector<SurfaceColour> colours(tree.size());
   std::vector<PackedDirection> normals(lit ? tree.size() : 0);
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t index = tree.index(place);
-      if (rule.colour != nullptr && block.is_own(index))
-        colours[index] = rule.colour(surfel_at(search, place, own_rule));
-      if (lit) normals[place] = pack_direction(surfel_at(search, place, lit_rule).normal);
-    }
-  });
+  const auto lit_neighbours = [&](NeighbourSearch& search, std::size_t place) {
+    return search.nearest_facing(place, kLitSurfel.neighbours, neighbour_reach,
+                                 unpack_direction(normals[place]));
+  };
+  NeededPlaces(block, tree)
+      .work_on(context, lit ? 1 : 0,
+               [&](NeighbourSearch& search, std::size_t place) {
+                 const std::uint32_t index = tree.index(place);
+                 if (rule.colour != nullptr && block.is_own(index))
+                   colours[index] = rule.colour(surfel_at(search, place, own_rule));
+                 if (lit) normals[place] = pack_direction(surfel_at(search, place, lit_rule).normal);
+               },
+               {.radius = [&](std::size_t) { return neighbour_reach; }, .neighbours = lit_neighbours});
   if (!lit) return colours;
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {
       if (!block.is_own(tree.index(place))) continue;
       const Eigen::Vector3d normal = unpack_direction(normals[place]);
-      const auto neighbours = search.nearest_facing(place, kLitSurfel.neighbours, neighbour_reach, normal);
+      const auto neighbours = lit_neighbours(search, place);
       colours[tree.index(place)].shade = shade_of(normal, ridge_at(tree, normals, place, neighbours));
     }
   });

@@ -170,11 +170,20 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
   const PointTree tree(context, block.records);
   block.records = std::vector<SeenPoint>();
   std::vector<NoisyPlane> planes(tree.size());
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place)
-      planes[place] =
-          noisy_plane(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
-  });
+  const auto neighbours_of_plane = [&](NeighbourSearch& search, std::size_t place) {
+    const NoisyPlane& plane = planes[place];
+    return plane.normal.isZero()
+               ? search.nearest(place, kSurfaceNeighbours, plane.reach)
+               : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+  };
+  NeededPlaces(block, tree)
+      .work_on(context, 1,
+               [&](NeighbourSearch& search, std::size_t place) {
+                 planes[place] = noisy_plane(
+                     tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / 2.0, true}));
+               },
+               {.radius = [&](std::size_t place) { return static_cast<double>(planes[place].reach); },
+                .neighbours = neighbours_of_plane});
   std::vector<std::uint8_t> noise(tree.size());
   const double most = for_estimated_sigma(sigmas);
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
@@ -186,10 +195,7 @@ std::vector<std::uint8_t> outside_of_block(const Context& context, Block<SeenPoi
         is_noise = std::isfinite(reach) ? 1 : 0;  // in a cloud of a few rays nobody can tell
         continue;
       }
-      const auto neighbours =
-          plane.normal.isZero()
-              ? search.nearest(place, kSurfaceNeighbours, plane.reach)
-              : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+      const auto neighbours = neighbours_of_plane(search, place);
       const bool outside = is_outside(tree, planes, place, neighbours, most);
       const bool in_passing = !plane.is_flat && transparent.has(tree.point(place));
       if (outside || in_passing) is_noise = is_on_wire(search, place, reach / 2.0) ? 0 : 1;

@@ -40,20 +40,28 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   const PointTree tree(context, block.records);
   block.records = std::vector<SeenPoint>();
   std::vector<LocalPlane> planes(tree.size());
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place)
-      planes[place] =
-          plane_of(tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / (1.0 + kWider), true}));
-  });
+  const auto neighbours_of = [&](NeighbourSearch& search, std::size_t place) {
+    const LocalPlane& plane = planes[place];
+    return search.nearest_facing(place, SurfaceFit::kMost, kWider * static_cast<double>(plane.reach),
+                                 plane.normal.cast<double>());
+  };
+  NeededPlaces(block, tree)
+      .work_on(
+          context, 1,
+          [&](NeighbourSearch& search, std::size_t place) {
+            planes[place] = plane_of(
+                tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / (1.0 + kWider), true}));
+          },
+          {.radius = [&](std::size_t place) { return kWider * static_cast<double>(planes[place].reach); },
+           .neighbours = neighbours_of});
   std::vector<Move> moves(tree.size(), Move::Zero());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     SurfaceFit fit(tree, planes);
     for (std::size_t place = begin; place < end; ++place) {
       const LocalPlane& plane = planes[place];
       if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
-      const auto neighbours = search.nearest_facing(
-          place, SurfaceFit::kMost, kWider * static_cast<double>(plane.reach), plane.normal.cast<double>());
-      moves[tree.index(place)] = move_of(plane, fit.height(place, neighbours), tree.to_sensor(place));
+      moves[tree.index(place)] =
+          move_of(plane, fit.height(place, neighbours_of(search, place)), tree.to_sensor(place));
     }
   });
   return moves;

@@ -6,7 +6,10 @@
 #include <raycloud/spatial/seen_point.h>
 #include <raycloud/spatial/surfel.h>
 
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 namespace ray {
 
@@ -25,5 +28,38 @@ inline SeenPoint seen_point(const RayCloud& rays, std::size_t i) {
 /// range are near each other.
 void for_each_place(const Context& context, const PointTree& tree,
                     const std::function<void(NeighbourSearch&, std::size_t begin, std::size_t end)>& work);
+
+/// The own places of a block, and in rings around them those that their results depend on. The rest of a
+/// block lies within reach but is nobody's neighbour.
+class NeededPlaces {
+ public:
+  using Work = std::function<void(NeighbourSearch&, std::size_t place)>;
+
+  NeededPlaces(const Block<SeenPoint>& block, const PointTree& tree);
+
+  /// What the neighbours of a place are when it has been worked on.
+  struct Neighbourhood {
+    std::function<double(std::size_t place)> radius;  ///< m: none is further
+    std::function<std::span<const Neighbour>(NeighbourSearch&, std::size_t place)> neighbours;
+  };
+  /// `work` on all own places; then on their neighbours, those of these, and so on, so many rings; on each
+  /// place once.
+  void work_on(const Context& context, std::uint8_t rings, const Work& work, const Neighbourhood& around);
+
+  /// Whether a place is own, or in one of the first so many rings.
+  [[nodiscard]] bool has(std::size_t place, std::uint8_t rings) const {
+    return ring_.empty() || ring_[place] <= rings;
+  }
+
+ private:
+  void work_on_ring(const Context& context, std::uint8_t ring, const Work& work);
+  void find_ring(const Context& context, std::uint8_t ring, const Neighbourhood& around);
+
+  static constexpr std::uint8_t kNoRing = 0xff;
+
+  const Block<SeenPoint>& block_;
+  const PointTree& tree_;
+  std::vector<std::uint8_t> ring_;  ///< 0 for own places; empty: all are own
+};
 
 }  // namespace ray

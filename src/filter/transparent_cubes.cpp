@@ -76,11 +76,12 @@ void count_pass(const VoxelTable<Counts>& cubes, double width, const Eigen::Vect
 TransparentCubes::TransparentCubes(const Context& context, RaySource& source) {
   blocks::EndSampler sampler;
   const StreamCounts counts = stream(
-      context, source, nullptr, [](const RayCloud&) { return Nothing{}; },
-      [&](const RayCloud& rays, Nothing) {
-        for (std::size_t i = 0; i < rays.size(); ++i)
-          if (rays.bounded[i] != 0) sampler.add(rays.ends[i]);
-      });
+      context, source, nullptr,
+      [](const RayCloud& rays) {
+        return rays.size() - static_cast<std::size_t>(
+                                 std::count(rays.bounded.begin(), rays.bounded.end(), std::uint8_t{0}));
+      },
+      [&](const RayCloud& rays, std::size_t bounded) { sampler.add(rays, bounded); });
   source.rewind();
   const double spacing = estimate_spacing(sampler.sample().ends, sampler.sample().bounded).value;
   if (!(spacing > 0.0)) return;

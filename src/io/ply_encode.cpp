@@ -300,30 +300,49 @@ void PlyEncoder::reflect_settled(RayCloud& rays) const {
     rays.colours[i].intensity = alpha_of(rays, i);
 }
 
-/// Block by block, in loops that compilers vectorise.
+/// Block by block, in loops that compilers vectorise. What comes from a file mostly stays as it is, which one
+/// loop finds out without writing.
 template <class Real>
 bool PlyEncoder::reflect_as(RayCloud& rays) const {
-  std::size_t changing = 0;
+  bool settled = true;
   double* to = rays.ends.data()->data();
   double* from = rays.starts.data()->data();
   for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, rays.size());
     Safety safety(safe_);
+    std::uint64_t changing = 0;  // bits that would not be the same
     for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
+      const double way = from[j] - to[j];
       safety.add(to[j]);
-      safety.add(from[j] - to[j]);
+      safety.add(way);
+      const auto stored_end = static_cast<double>(static_cast<Real>(to[j]));
+      const auto stored_way = static_cast<double>(static_cast<Real>(way));
+      changing |=
+          (std::bit_cast<std::uint64_t>(stored_end) ^ std::bit_cast<std::uint64_t>(to[j])) |
+          (std::bit_cast<std::uint64_t>(stored_way) ^ std::bit_cast<std::uint64_t>(way)) |
+          (std::bit_cast<std::uint64_t>(stored_end + stored_way) ^ std::bit_cast<std::uint64_t>(from[j]));
     }
     for (std::size_t i = begin; i < end; ++i)
       safety.add_time(rays.times[i]);
     for (std::size_t i = begin; i < end && !safety.is_safe(); ++i)
       check_ray(rays, i);
-    for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
-      const auto stored_end = static_cast<Real>(to[j]);
-      const auto stored_ray = static_cast<Real>(from[j] - to[j]);
-      to[j] = static_cast<double>(stored_end);
-      from[j] = static_cast<double>(stored_end) + static_cast<double>(stored_ray);
-      changing += from[j] - to[j] != static_cast<double>(stored_ray) ? 1 : 0;
-    }
+    if (changing != 0) settled = store_as<Real>(rays, begin, end) && settled;
+  }
+  return settled;
+}
+
+/// Rounds starts and ends as a file does. Returns whether doing it again would leave them.
+template <class Real>
+bool PlyEncoder::store_as(RayCloud& rays, std::size_t begin, std::size_t end) {
+  double* to = rays.ends.data()->data();
+  double* from = rays.starts.data()->data();
+  std::size_t changing = 0;
+  for (std::size_t j = 3 * begin; j < 3 * end; ++j) {
+    const auto stored_end = static_cast<Real>(to[j]);
+    const auto stored_ray = static_cast<Real>(from[j] - to[j]);
+    to[j] = static_cast<double>(stored_end);
+    from[j] = static_cast<double>(stored_end) + static_cast<double>(stored_ray);
+    changing += from[j] - to[j] != static_cast<double>(stored_ray) ? 1 : 0;
   }
   return changing == 0;
 }

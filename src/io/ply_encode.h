@@ -40,6 +40,8 @@ class PlyEncoder {
   void encode_all(const RayCloud& rays, std::size_t count, const RowAt& row_at, RawChunk& raw) const;
   template <class Real>
   [[nodiscard]] bool reflect_as(RayCloud& rays) const;
+  template <class Real>
+  [[nodiscard]] static bool store_as(RayCloud& rays, std::size_t begin, std::size_t end);
   void check_ray(const RayCloud& rays, std::size_t row) const;
   void check_value(double value) const;
   [[noreturn]] void fail_not_finite() const;

@@ -33,18 +33,16 @@ std::uint64_t shuffle(std::uint64_t key) {
   return key ^ (key >> 33);
 }
 
-}  // namespace
-
-VoxelIndex voxel_index(const Eigen::Vector3d& point, Metres width) {
-  assert(width.value > 0.0);
-  const Eigen::Array3d q = point.array() / width.value;
+// Here, where they can become part of a loop; a function that others call cannot.
+inline VoxelIndex index_of(const Eigen::Vector3d& point, double width) {
+  const Eigen::Array3d q = point.array() / width;
   if (!(std::abs(q.x()) < kLimit && std::abs(q.y()) < kLimit && std::abs(q.z()) < kLimit)) {
-    throw_too_far(point, width.value);
+    throw_too_far(point, width);
   }
   return {floor_to_int(q.x()), floor_to_int(q.y()), floor_to_int(q.z())};
 }
 
-VoxelPlace voxel_place(const VoxelIndex& cube) {
+inline VoxelPlace place_of(const VoxelIndex& cube) {
   constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1);
   constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
   const std::int64_t x = cube.x + kHalf;
@@ -57,11 +55,22 @@ VoxelPlace voxel_place(const VoxelIndex& cube) {
   return {{x >> kBits, y >> kBits, z >> kBits}, shuffle(local | kNeverZero)};
 }
 
+}  // namespace
+
+VoxelIndex voxel_index(const Eigen::Vector3d& point, Metres width) {
+  assert(width.value > 0.0);
+  return index_of(point, width.value);
+}
+
+VoxelPlace voxel_place(const VoxelIndex& cube) {
+  return place_of(cube);
+}
+
 VoxelKeys voxel_keys(std::span<const Eigen::Vector3d> points, Metres width) {
   VoxelKeys result;
   result.keys.resize(points.size());
   for (std::size_t i = 0; i < points.size(); i++) {
-    const VoxelPlace place = voxel_place(voxel_index(points[i], width));
+    const VoxelPlace place = place_of(index_of(points[i], width.value));
     result.keys[i] = place.key;
     if (result.runs.empty() || result.runs.back().block != place.block) {
       result.runs.push_back({place.block, i});

@@ -8,8 +8,6 @@
 #include <raycloud/exec/stream.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -22,8 +20,16 @@ template <class Record>
 struct Block {
   std::vector<Record> records;
   std::vector<std::uint8_t> own;  ///< 0: around it, no result is wanted. Empty: all are its own
+  Eigen::AlignedBox3d box;        ///< all ends in it are its own; empty where all are anyway
 
   [[nodiscard]] bool is_own(std::size_t i) const { return own.empty() || own[i] != 0; }
+  /// Whether all records within the radius (m) of a place are its own for sure.
+  [[nodiscard]] bool has_only_own(const Eigen::Vector3d& place, double radius) const {
+    if (own.empty()) return true;
+    const Eigen::Array3d margin = radius * (1.0 + 1e-12) + place.array().abs() * 1e-15;
+    return (place.array() - margin > box.min().array()).all() &&
+           (place.array() + margin < box.max().array()).all();
+  }
 };
 
 /// An even sample of the ends of the bounded rays: the same for a cloud however it is read and worked on.
@@ -40,13 +46,25 @@ struct BlockNeeds {
 
 namespace blocks {
 
-/// Takes every so many of the ends it is shown.
+/// Takes every so many of the ends of the bounded rays that it is shown.
 class EndSampler {
  public:
-  void add(const Eigen::Vector3d& end) {
-    if (sample_.bounded++ % stride_ != 0) return;
-    if (sample_.ends.size() == kMost) thin();
-    if ((sample_.bounded - 1) % stride_ == 0) sample_.ends.push_back(end);
+  /// `bounded` of the rays are.
+  void add(const RayCloud& rays, std::size_t bounded) {
+    const std::uint64_t before = sample_.bounded;
+    sample_.bounded += bounded;
+    std::size_t row = 0;
+    std::uint64_t passed = before;  // bounded rays in front of the row
+    while (next_ < sample_.bounded) {
+      if (sample_.ends.size() == kMost) thin();
+      if (bounded == rays.size())
+        row = static_cast<std::size_t>(next_ - before);
+      else
+        while (rays.bounded[row] == 0 || passed++ < next_)
+          ++row;
+      sample_.ends.push_back(rays.ends[row++]);
+      next_ += stride_;
+    }
   }
   [[nodiscard]] const EndSample& sample() const { return sample_; }
 
@@ -60,25 +78,32 @@ class EndSampler {
   }
   EndSample sample_;
   std::uint64_t stride_ = 1;
+  /// The bounded ray to be taken next. Stays so when the sample is thinned, being kMost strides from the
+  /// first.
+  std::uint64_t next_ = 0;
 };
 
-/// Rays of a chunk on their way to their blocks.
-template <class Record>
-struct Extracted {
-  std::vector<Record> records;
-  std::vector<Eigen::Vector3d> ends;
-};
-
+/// The records of the bounded rays of a chunk.
 template <class Record, class Extract>
-Extracted<Record> extract_all(const RayCloud& rays, const Extract& extract) {
-  Extracted<Record> result;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.bounded[i] == 0) continue;
-    result.records.push_back(extract(rays, i));
-    result.ends.push_back(rays.ends[i]);
-  }
-  return result;
+std::vector<Record> extract_all(const RayCloud& rays, const Extract& extract) {
+  std::vector<Record> records;
+  records.reserve(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0) records.push_back(extract(rays, i));
+  return records;
 }
+
+/// The records of a chunk on their way to their blocks, those of one block beside each other.
+template <class Record>
+struct Copies {
+  struct Run {
+    std::size_t part = 0;
+    std::size_t end = 0;  ///< in `records`; begins where the one before ends
+  };
+  std::vector<Run> runs;
+  std::vector<Record> records;
+  std::vector<std::uint8_t> own;
+};
 
 /// The blocks and their results, on disk.
 template <class Record, class Result>
@@ -87,19 +112,49 @@ class SpilledBlocks {
   SpilledBlocks(const EndSample& sample, std::size_t parts, double reach, std::size_t memory)
       : cuts_(sample.ends, parts),
         reach_(reach),
-        records_(cuts_.parts(), page_bytes(memory)),
-        results_(cuts_.parts(), page_bytes(memory)) {}
+        records_(cuts_.parts(), page_bytes(memory / 16)),
+        own_(cuts_.parts(), page_bytes(memory / 16 / sizeof(Record))),
+        results_(cuts_.parts(), page_bytes(memory / 16)) {}
 
-  void add(const Extracted<Record>& extracted) {
-    std::array<std::byte, sizeof(Record) + 1> bytes;
-    for (std::size_t i = 0; i < extracted.records.size(); ++i) {
-      std::memcpy(bytes.data(), &extracted.records[i], sizeof(Record));
-      const std::size_t own = cuts_.part_of(extracted.ends[i]);
-      cuts_.parts_near(extracted.ends[i], reach_, near_);
-      for (const std::uint32_t part : near_) {
-        bytes.back() = std::byte{part == own};
-        records_.append(part, bytes.data(), bytes.size());
+  /// The records go to every block that may need them. May be called at the same time.
+  [[nodiscard]] Copies<Record> sort(const RayCloud& rays, const std::vector<Record>& records) const {
+    struct Copy {
+      std::uint32_t part, record;
+    };
+    std::vector<Copy> copies;
+    std::vector<std::uint32_t> own_part(records.size()), near;
+    std::vector<std::size_t> ends(cuts_.parts() + 1);
+    for (std::size_t i = 0, record = 0; i < rays.size(); ++i) {
+      if (rays.bounded[i] == 0) continue;
+      own_part[record] = static_cast<std::uint32_t>(cuts_.part_of(rays.ends[i]));
+      cuts_.parts_near(rays.ends[i], reach_, near);
+      for (const std::uint32_t part : near) {
+        copies.push_back({part, static_cast<std::uint32_t>(record)});
+        ++ends[part + 1];
       }
+      ++record;
+    }
+    Copies<Record> sorted;
+    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
+      if (ends[part + 1] > 0) sorted.runs.push_back({part, ends[part] + ends[part + 1]});
+      ends[part + 1] += ends[part];
+    }
+    sorted.records.resize(copies.size());
+    sorted.own.resize(copies.size());
+    for (const Copy& copy : copies) {
+      const std::size_t at = ends[copy.part]++;
+      sorted.records[at] = records[copy.record];
+      sorted.own[at] = own_part[copy.record] == copy.part ? 1 : 0;
+    }
+    return sorted;
+  }
+
+  void add(const Copies<Record>& copies) {
+    std::size_t begin = 0;
+    for (const auto& run : copies.runs) {
+      records_.append(run.part, &copies.records[begin], (run.end - begin) * sizeof(Record));
+      own_.append(run.part, &copies.own[begin], run.end - begin);
+      begin = run.end;
     }
   }
 
@@ -110,43 +165,56 @@ class SpilledBlocks {
       Block<Record> block = load(part);
       const std::vector<std::uint8_t> own = block.own;
       if (std::count(own.begin(), own.end(), 0) == static_cast<std::ptrdiff_t>(own.size())) continue;
-      const std::vector<Result> results = compute(context, std::move(block), reach_);
+      std::vector<Result> results = compute(context, std::move(block), reach_);
+      std::size_t count = 0;
       for (std::size_t i = 0; i < own.size(); ++i)
-        if (own[i] != 0) results_.append(part, &results[i], sizeof(Result));
+        if (own[i] != 0) results[count++] = results[i];
+      results_.append(part, results.data(), count * sizeof(Result));
     }
+  }
+
+  /// The next results of these parts.
+  std::span<const Result> take(const std::vector<std::uint32_t>& parts) {
+    std::vector<std::size_t> next(cuts_.parts() + 1);
+    for (const std::uint32_t part : parts)
+      ++next[part + 1];
+    by_part_.resize(parts.size());
+    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
+      if (next[part + 1] > 0) results_.read(part, &by_part_[next[part]], next[part + 1] * sizeof(Result));
+      next[part + 1] += next[part];
+    }
+    taken_.resize(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      taken_[i] = by_part_[next[parts[i]]++];
+    return taken_;
   }
 
   [[nodiscard]] std::size_t part_of(const Eigen::Vector3d& end) const { return cuts_.part_of(end); }
-  /// The next result of a part.
-  Result next(std::size_t part) {
-    Result result;
-    results_.read(part, &result, sizeof(Result));
-    return result;
-  }
 
  private:
   [[nodiscard]] std::size_t page_bytes(std::size_t memory) const {
-    return std::clamp<std::size_t>(memory / 16 / cuts_.parts(), std::size_t{1} << 12, std::size_t{1} << 18);
+    return std::clamp<std::size_t>(memory / cuts_.parts(), std::size_t{1} << 12, std::size_t{1} << 18);
   }
 
   Block<Record> load(std::size_t part) {
-    const std::size_t count = records_.size(part) / (sizeof(Record) + 1);
+    const std::size_t count = own_.size(part);
     Block<Record> block;
+    block.box = cuts_.box_of(part);
     block.records.resize(count);
     block.own.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      records_.read(part, &block.records[i], sizeof(Record));
-      records_.read(part, &block.own[i], 1);
-    }
+    records_.read(part, block.records.data(), count * sizeof(Record));
+    own_.read(part, block.own.data(), count);
     records_.drop(part);
+    own_.drop(part);
     return block;
   }
 
   SpaceCuts cuts_;
   double reach_;
   Spill records_;
+  Spill own_;  ///< a byte for each record
   Spill results_;
-  std::vector<std::uint32_t> near_;
+  std::vector<Result> by_part_, taken_;
 };
 
 }  // namespace blocks
@@ -166,7 +234,6 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
                         const Extract& extract, const Compute& compute, const Apply& apply) {
   // Eigen's vectors are not trivially copyable by the letter; their bytes are all there is to them.
   static_assert(std::is_trivially_destructible_v<Record> && std::is_trivially_destructible_v<Result>);
-  using Extracted = blocks::Extracted<Record>;
   constexpr std::size_t kMostBlocks = 1024;
   const auto extract_chunk = [&](const RayCloud& rays) { return blocks::extract_all<Record>(rays, extract); };
   const std::size_t memory = memory_budget(context);
@@ -177,14 +244,14 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
   const std::size_t fitting = memory / needs.bytes_per_record;
   if (source.info().ray_count)
     whole.records.reserve(std::min<std::uint64_t>(*source.info().ray_count, fitting));
-  stream(context, source, nullptr, extract_chunk, [&](const RayCloud&, const Extracted& extracted) {
-    for (const Eigen::Vector3d& end : extracted.ends)
-      sampler.add(end);
-    if (sampler.sample().bounded <= fitting)
-      whole.records.insert(whole.records.end(), extracted.records.begin(), extracted.records.end());
-    else
-      whole.records = std::vector<Record>();
-  });
+  stream(context, source, nullptr, extract_chunk,
+         [&](const RayCloud& rays, const std::vector<Record>& records) {
+           sampler.add(rays, records.size());
+           if (sampler.sample().bounded <= fitting)
+             whole.records.insert(whole.records.end(), records.begin(), records.end());
+           else
+             whole.records = std::vector<Record>();
+         });
   source.rewind();
   const EndSample& sample = sampler.sample();
   const double reach = needs.reach(sample);
@@ -198,34 +265,34 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
     const std::size_t parts = 2 * (sample.bounded * needs.bytes_per_record / memory + 1);
     spilled = std::make_unique<blocks::SpilledBlocks<Record, Result>>(sample, std::min(parts, kMostBlocks),
                                                                       reach, memory);
-    stream(context, source, nullptr, extract_chunk,
-           [&](const RayCloud&, const Extracted& extracted) { spilled->add(extracted); });
+    stream(
+        context, source, nullptr,
+        [&](const RayCloud& rays) { return spilled->sort(rays, extract_chunk(rays)); },
+        [&](const RayCloud&, const blocks::Copies<Record>& copies) { spilled->add(copies); });
     source.rewind();
     spilled->compute(context, compute);
   }
 
-  std::size_t next = 0;
-  std::vector<Result> of_chunk;
-  const auto parts_of = [&](const RayCloud& rays) {
+  /// Which results a chunk takes: so many, and from where.
+  struct Wanted {
+    std::size_t count = 0;
     std::vector<std::uint32_t> parts;
-    if (spilled == nullptr) return parts;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      if (rays.bounded[i] != 0) parts.push_back(static_cast<std::uint32_t>(spilled->part_of(rays.ends[i])));
-    return parts;
   };
-  return stream(context, source, &sink, parts_of,
-                [&](RayCloud& rays, const std::vector<std::uint32_t>& parts) {
-                  if (spilled != nullptr) {
-                    of_chunk.clear();
-                    for (const std::uint32_t part : parts)
-                      of_chunk.push_back(spilled->next(part));
-                    return apply(rays, std::span<const Result>(of_chunk));
-                  }
-                  const auto count = static_cast<std::size_t>(
-                      std::count_if(rays.bounded.begin(), rays.bounded.end(), [](auto b) { return b != 0; }));
-                  next += count;
-                  return apply(rays, std::span<const Result>(results).subspan(next - count, count));
-                });
+  const auto wanted_of = [&](const RayCloud& rays) {
+    Wanted wanted;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.bounded[i] == 0) continue;
+      ++wanted.count;
+      if (spilled) wanted.parts.push_back(static_cast<std::uint32_t>(spilled->part_of(rays.ends[i])));
+    }
+    return wanted;
+  };
+  std::size_t next = 0;
+  return stream(context, source, &sink, wanted_of, [&](RayCloud& rays, const Wanted& wanted) {
+    next += wanted.count;
+    return apply(rays, spilled ? spilled->take(wanted.parts)
+                               : std::span<const Result>(results).subspan(next - wanted.count, wanted.count));
+  });
 }
 
 }  // namespace ray

@@ -2,6 +2,7 @@
 /// Space cut into parts that hold about as many points each.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,8 @@ class SpaceCuts {
       node = 2 * node + (point[cuts_[node].axis] < cuts_[node].at ? 0 : 1);
     return node - cuts_.size();
   }
+  /// The box of a part, without end where it has no neighbour.
+  [[nodiscard]] Eigen::AlignedBox3d box_of(std::size_t part) const;
   /// Replaces `found` by the parts that may hold a point within `reach` of this one, its own among them.
   void parts_near(const Eigen::Vector3d& point, double reach, std::vector<std::uint32_t>& found) const;
 

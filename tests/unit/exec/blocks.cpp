@@ -39,11 +39,24 @@ std::vector<Seen> look_around(const Context&, Block<Place>&& block, double reach
   return seen;
 }
 
+/// Nothing else is near a place that says so; true of how many.
+std::size_t count_places_among_own(const Block<Place>& block, double radius) {
+  std::size_t count = 0;
+  for (const Place& place : block.records) {
+    if (!block.has_only_own(place.end, radius)) continue;
+    ++count;
+    for (std::size_t i = 0; i < block.records.size(); ++i)
+      EXPECT_TRUE(block.is_own(i) || (block.records[i].end - place.end).norm() > radius);
+  }
+  return count;
+}
+
 /// Writes what was seen into the colours, with the number of times that `compute` was called.
 struct ToyRun {
   RayCloud cloud;
   StreamCounts counts;
   std::size_t blocks = 0;
+  std::size_t among_own = 0;
 };
 
 constexpr std::size_t kBytes = 64;
@@ -69,6 +82,7 @@ ToyRun toy_run(const RayCloud& cloud, double reach, const Context& context, std:
       },
       [&](const Context& with, Block<Place>&& block, double given) {
         ++run.blocks;
+        run.among_own += count_places_among_own(block, given / 3.0);
         return look_around(with, std::move(block), given);
       },
       apply);
@@ -136,6 +150,8 @@ TEST(RunBlocks, TwentyBlocksAndMore) {
   write_seen(changed, by_brute_force(cloud, 2.0));
   const ToyRun run = toy_run(cloud, 2.0, {.memory = 15000}, 100, write_seen);
   EXPECT_GE(run.blocks, 20U);
+  EXPECT_GE(run.among_own, 500U);
+  EXPECT_LT(run.among_own, 3000U);
   EXPECT_TRUE(same_bits(run.cloud, changed));
 }
 
@@ -151,11 +167,32 @@ TEST(RunBlocks, ManyRaysInOnePlaceAreNotCopiedToEveryBlock) {
   }
 }
 
+/// Ends numbered from `first` on along x, each behind an unbounded one if `mixed`.
+RayCloud numbered_ends(std::size_t first, std::size_t count, bool mixed) {
+  RayCloud rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mixed) {
+      rays.ends.emplace_back(-1.0, 0.0, 0.0);
+      rays.bounded.push_back(0);
+    }
+    rays.ends.emplace_back(static_cast<double>(first + i), 0.0, 0.0);
+    rays.bounded.push_back(1);
+  }
+  rays.starts.resize(rays.ends.size());
+  rays.times.resize(rays.ends.size());
+  rays.colours.resize(rays.ends.size());
+  return rays;
+}
+
 TEST(EndSampler, AnEvenSampleOfAnyNumber) {
+  std::size_t chunk = 1;
   for (const std::size_t count : {0UL, 1UL, 65536UL, 65537UL, 131072UL, 131073UL, 500000UL}) {
     blocks::EndSampler sampler;
-    for (std::size_t i = 0; i < count; ++i)
-      sampler.add({static_cast<double>(i), 0, 0});
+    for (std::size_t i = 0; i < count; i += chunk) {
+      chunk = chunk * 7 % 10007;
+      const std::size_t bounded = std::min(chunk, count - i);
+      sampler.add(numbered_ends(i, bounded, chunk % 2 == 0), bounded);
+    }
     const EndSample& sample = sampler.sample();
     EXPECT_EQ(sample.bounded, count);
     EXPECT_LE(sample.ends.size(), 65536U);

@@ -47,6 +47,22 @@ RC_GTEST_PROP(SpaceCuts, PartsNearHoldEveryPointWithinReach, ()) {
   }
 }
 
+RC_GTEST_PROP(SpaceCuts, ThePartOfAPointIsTheOneWhoseBoxHoldsIt, ()) {
+  const std::vector<Eigen::Vector3d> points = points_to_cut(*rc::gen::inRange<std::size_t>(1, 200));
+  const SpaceCuts cuts(points, *rc::gen::inRange<std::size_t>(0, 70));
+  for (const Eigen::Vector3d& point : points) {
+    std::size_t holding = 0;
+    for (std::size_t part = 0; part < cuts.parts(); ++part) {
+      const Eigen::AlignedBox3d box = cuts.box_of(part);
+      const bool inside =
+          (point.array() >= box.min().array()).all() && (point.array() < box.max().array()).all();
+      RC_ASSERT(!inside || part == cuts.part_of(point));
+      holding += inside ? 1 : 0;
+    }
+    RC_ASSERT(holding == 1U);
+  }
+}
+
 TEST(SpaceCuts, PointsExactlyAtReachAcrossACut) {
   // Each pair is as far apart as the reach, by numbers that are rounded: 0.1 has no end in binary.
   std::vector<Eigen::Vector3d> points;
