@@ -57,7 +57,7 @@ void print_calibration() {
 }
 
 void print_far_from_others() {
-  const Sampled scan = room_scan(1, {true, true, true}, 20'000);
+  const Sampled scan = room_scan(1, {true, true, true}, {.rays = 20'000});
   std::printf("\nDenoising by distance against its definition: %zu rays\n\n", scan.rays.size());
   std::printf("| command | removed | differences | bar | |\n|---|---|---|---|---|\n");
   for (const unsigned least : {1U, 3U}) {

@@ -14,9 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNoise = 0.01;  // m
 constexpr double kShare = 0.01;  // of each kind
-constexpr int kBeams = 32;
 
 const Vector3d kLow(-3.0, -2.5, 0.0);
 const Vector3d kHigh(3.0, 2.5, 2.6);
@@ -132,7 +130,8 @@ class NoiseMaker {
   std::uint64_t count_;
 };
 
-void add_noise(Sampled& scan, const std::vector<Hit>& hits, const NoiseKinds& kinds, std::uint64_t seed) {
+void add_noise(Sampled& scan, const std::vector<Hit>& hits, const NoiseKinds& kinds, std::size_t beams,
+               std::uint64_t seed) {
   NoiseMaker maker(scan, hits, seed);
   // Rays are even in all directions: taken by the cube of their way through the room, they fill it evenly.
   if (kinds.uniform) {
@@ -146,8 +145,8 @@ void add_noise(Sampled& scan, const std::vector<Hit>& hits, const NoiseKinds& ki
   }
   if (kinds.mixed) {
     maker.put(kMixed, [&](std::size_t row, double u, double v) -> std::optional<double> {
-      if (row / kBeams % 2 == 1) return std::nullopt;  // every edge keeps real neighbours
-      const std::size_t other = u < 0.5 ? row - kBeams : row + kBeams;
+      if (row / beams % 2 == 1) return std::nullopt;  // every edge keeps real neighbours
+      const std::size_t other = u < 0.5 ? row - beams : row + beams;
       if (other >= hits.size() || hits[other].part == kNothing || hits[row].part == kNothing)
         return std::nullopt;
       if (std::abs(hits[other].range - hits[row].range) < 0.3) return std::nullopt;
@@ -165,12 +164,14 @@ void add_noise(Sampled& scan, const std::vector<Hit>& hits, const NoiseKinds& ki
 
 }  // namespace
 
-Sampled room_scan(std::uint64_t seed, const NoiseKinds& kinds, std::uint64_t rays) {
+Sampled room_scan(std::uint64_t seed, const NoiseKinds& kinds, const RoomScanner& scanner) {
+  const std::uint64_t rays = scanner.rays;
   const double offset = 0.1 * static_cast<double>(seed);
   const double duration = static_cast<double>(rays) / 314'000.0;
   const ray::Trajectory path{.times = {0.0, duration},
-                             .positions = {{-0.4 - offset, -0.2, 1.3}, {0.4 - offset, 0.2 * offset, 1.35}}};
-  const ray::ScanPlan plan(ray::SpinningScanner{.beams = kBeams}, path, rays);
+                             .positions = {{-0.4 - offset, scanner.aside - 0.2, 1.3},
+                                           {0.4 - offset, scanner.aside + 0.2 * offset, 1.35}}};
+  const ray::ScanPlan plan(ray::SpinningScanner{.beams = scanner.beams}, path, rays);
   const ray::RandomStream noise(seed, "noise of range");
   Sampled scan;
   scan.rays.resize(rays);
@@ -183,12 +184,12 @@ Sampled room_scan(std::uint64_t seed, const NoiseKinds& kinds, std::uint64_t ray
     scan.rays.starts[row] = shot.origin;
     scan.rays.times[row] = shot.time;
     scan.rays.bounded[row] = bounded ? 1 : 0;
-    const double wrong = bounded ? kNoise * normal_number(noise, i) : 0.0;
+    const double wrong = bounded ? scanner.noise * normal_number(noise, i) : 0.0;
     scan.rays.ends[row] = shot.origin + (hit.range + wrong) * shot.direction;
     scan.truth.push_back({shot.origin + hit.range * shot.direction, hit.normal, hit.part});
     hits.push_back(hit);
   }
-  add_noise(scan, hits, kinds, seed);
+  add_noise(scan, hits, kinds, static_cast<std::size_t>(scanner.beams), seed);
   return scan;
 }
 

@@ -11,11 +11,10 @@ namespace ray {
 
 double neighbour_reach(const EndSample& sample) {
   // 16 neighbours on a surface are within 2.3 spacings.
-  constexpr double kSpacings = 32.0;
   constexpr std::size_t kFew = 8;  // have no spacing
   if (sample.ends.size() < kFew) return std::numeric_limits<double>::infinity();
   const double spacing = estimate_spacing(sample.ends, sample.bounded).value;
-  return kSpacings * spacing;
+  return kReachSpacings * spacing;
 }
 
 void for_each_place(const Context& context, const PointTree& tree,

@@ -15,6 +15,8 @@ namespace ray {
 
 inline constexpr std::size_t kSurfaceNeighbours = 16;
 
+inline constexpr double kReachSpacings = 32.0;  ///< how far neighbours may be, in spacings
+
 inline SeenPoint seen_point(const RayCloud& rays, std::size_t i) {
   return {rays.ends[i], pack_direction(rays.starts[i] - rays.ends[i])};
 }

@@ -16,7 +16,8 @@ struct FarFromOthers {
   unsigned min_neighbours = 1;
 };
 
-/// Ends further from the surface of their neighbours than so many standard deviations of it.
+/// Ends further from the surface of their neighbours than so many standard deviations of it; and those that
+/// are alone where other rays go through, but wires stay.
 struct OutsideNeighbours {
   double sigmas = 3.0;
 };
@@ -37,9 +38,9 @@ struct Denoised {
 /// Leaves out bounded rays with noise for an end. Unbounded rays stay, in order, and everything keeps every
 /// bit.
 ///
-/// Neighbourhood shape, in two passes: reads, rewinds, reads again. The result depends neither on threads nor
-/// on memory. Leaves `sink->finish()` to the caller. Throws Error(usage) for distances and sigmas that are
-/// not above 0.
+/// Neighbourhood shape: reads twice, OutsideNeighbours four times, rewinding in between. The result depends
+/// neither on threads nor on memory. Leaves `sink->finish()` to the caller. Throws Error(usage) for distances
+/// and sigmas that are not above 0.
 Denoised remove_noise(const Context& context, RaySource& source, RaySink& sink, const Noise& noise);
 
 }  // namespace ray

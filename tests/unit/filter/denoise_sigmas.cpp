@@ -79,6 +79,84 @@ TEST(OutsideNeighbours, DustInTheWayOfOtherRaysGoes) {
   EXPECT_GT(after.size(), 60000U - 600U - 360U);
 }
 
+/// Rays from one place into a raster of directions, 10 mrad apart: half of them meet a near wall, the others
+/// one behind it. Every other ray along the edge of the near one meets both, and ends between (times below
+/// 1).
+RayCloud room_with_an_edge() {
+  constexpr int kSide = 160;
+  const RandomStream random(21, "edge");
+  RayCloud cloud;
+  cloud.resize(static_cast<std::size_t>(kSide) * kSide);
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      const auto i = static_cast<std::size_t>(row * kSide + column);
+      const Eigen::Vector3d direction =
+          Eigen::Vector3d(0.01 * (column - kSide / 2) + 0.005, 0.01 * (row - kSide / 2), 1.0).normalized();
+      const bool mixed = column == kSide / 2 && row % 2 == 0;
+      const double depth = mixed ? 2.2 + 1.6 * random.uniform(i, 0) : column < kSide / 2 ? 2.0 : 4.0;
+      const double range = depth / direction.z() + 0.005 * normal_deviate(random, i, 1);
+      cloud.starts[i].setZero();
+      cloud.ends[i] = range * direction;
+      cloud.times[i] = (mixed ? 0.0 : 1.0) + 1e-6 * static_cast<double>(i);
+      cloud.bounded[i] = 1;
+    }
+  return cloud;
+}
+
+/// They lie on a line as seen from the sensor, as points of a wire do, and one sees all others from aside.
+TEST(OutsideNeighbours, EndsBetweenTwoSurfacesGo) {
+  const RayCloud after = without_outliers(room_with_an_edge(), 3.0);
+  const auto left =
+      std::count_if(after.times.begin(), after.times.end(), [](double time) { return time < 1.0; });
+  EXPECT_LE(left, 16);  // of 80
+  EXPECT_GT(after.size(), 25600U - 80U - 150U);
+}
+
+/// A floor of 12 m by 12 m, a wire over it in which every 8 cm is met, and dust (times from 1e6 and 2e6).
+RayCloud floor_under_a_wire() {
+  constexpr std::size_t kFloor = 40000, kWire = 150, kDust = 400;
+  const RandomStream random(22, "wire");
+  RayCloud cloud;
+  cloud.resize(kFloor + kWire + kDust);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.starts[i] = {6.0, 4.0 + 0.5 * random.uniform(i, 9), 4.0};
+    Eigen::Vector3d& end = cloud.ends[i];
+    end = {12.0 * random.uniform(i, 0), 12.0 * random.uniform(i, 1), 0.0};
+    cloud.times[i] = static_cast<double>(i);
+    if (i >= kFloor && i < kFloor + kWire) {
+      cloud.times[i] = 1e6 + static_cast<double>(i);
+      end = {0.08 * (static_cast<double>(i - kFloor) + random.uniform(i, 2)),
+             6.0 + 0.004 * random.uniform(i, 3), 1.5};
+    }
+    if (i >= kFloor + kWire) {
+      cloud.times[i] = 2e6 + static_cast<double>(i);
+      end = cloud.starts[i] + (0.3 + 0.5 * random.uniform(i, 4)) * (end - cloud.starts[i]);
+    }
+    end += 0.01 * normal_deviate(random, i, 7) * (end - cloud.starts[i]).normalized();
+    cloud.bounded[i] = 1;
+  }
+  return cloud;
+}
+
+TEST(OutsideNeighbours, AWireStaysAndDustAroundItGoes) {
+  const RayCloud after = without_outliers(floor_under_a_wire(), 3.0);
+  const auto left = [&](double from, double to) {
+    return std::count_if(after.times.begin(), after.times.end(),
+                         [&](double time) { return time >= from && time < to; });
+  };
+  EXPECT_GE(left(1e6, 2e6), 145);  // of 150
+  EXPECT_LE(left(2e6, 3e6), 40);   // of 400
+  EXPECT_GE(left(0.0, 1e6), 40000 - 250);
+}
+
+TEST(OutsideNeighbours, WiresAndEdgesAreTheSameInAnyBlocks) {
+  RayCloud cloud = floor_under_a_wire();
+  cloud.append(room_with_an_edge());
+  const RayCloud expected = without_outliers(cloud, 3.0, {.threads = 1});
+  EXPECT_TRUE(
+      test::same_bits(without_outliers(cloud, 3.0, {.threads = 3, .memory = 1500000}, 777), expected));
+}
+
 TEST(OutsideNeighbours, SameBytesForAnyThreadsChunksAndMemory) {
   RayCloud cloud = noisy_floor(20000, 0.05);
   for (std::size_t i = 0; i < cloud.size(); i += 7)

@@ -1,0 +1,138 @@
+#include "on_wire.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace ray {
+namespace {
+
+constexpr std::size_t kAroundWire = 64;  // others that are looked at
+constexpr double kRangeSigma = 0.6;      // spacings: of a range
+constexpr double kAsideSigma = 0.2;      // spacings: of a point of a wire as seen from the sensor
+constexpr double kDeviations2 = 9.0;     // squared: three standard deviations
+constexpr double kWidthBeside = 3.0;     // of the strip around a wire that is empty, in widths of its own
+constexpr double kWireAslant = 0.95;     // most cosine between a wire and the ray that ends on it
+constexpr double kExtrapolated = 2.0;    // times the distance of the point that gives the direction
+
+struct NearWire {
+  Eigen::Vector3d offset;  // m, from the point in question
+  Eigen::Vector3d ray;     // to the sensor
+};
+
+/// What is around a point that may be on a wire, nearest first: sums depend on their order.
+std::vector<NearWire> around(NeighbourSearch& search, std::size_t place, double reach) {
+  const PointTree& tree = search.tree();
+  const auto found = search.nearest(place, kAroundWire, reach);
+  std::vector<Neighbour> sorted(found.begin(), found.end());
+  std::sort(sorted.begin(), sorted.end(), [&](const Neighbour& a, const Neighbour& b) {
+    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : tree.index(a.place) < tree.index(b.place);
+  });
+  std::vector<NearWire> result;
+  for (const Neighbour& near : sorted)
+    result.push_back(
+        {tree.point(near.place) - tree.point(place), unpack_direction(tree.to_sensor(near.place))});
+  return result;
+}
+
+/// One line through the point in question, and what lies on it.
+class WireTrial {
+ public:
+  /// Towards `other`, as seen along `ray`. `range2` and `aside2`: variances, m².
+  WireTrial(const NearWire& other, const Eigen::Vector3d& ray, double range2, double aside2)
+      : length_(other.offset.norm()),
+        direction_(other.offset / length_),
+        side_(direction_.cross(ray).normalized()),
+        depth_(side_.cross(direction_)),
+        own_(across(ray)),
+        other_(across(other.ray)),
+        range2_(range2),
+        aside2_(aside2) {
+    put(other);
+  }
+
+  void add(const NearWire& near) {
+    const double part = near.offset.dot(direction_) / length_;
+    if (std::abs(part) > kExtrapolated) return;
+    const Eigen::Vector2d off = across(near.offset);
+    const Eigen::Vector2d ray = across(near.ray);
+    // Of the offset from the line: the ranges of all three points are noisy, each along its ray. That of the
+    // point in question has no part to the side.
+    const double of_other = part * part;
+    const double to_side = range2_ * (of_other * other_.x() * other_.x() + ray.x() * ray.x()) + aside2_;
+    const double aside2 = off.x() * off.x();
+    if (aside2 > kWidthBeside * kWidthBeside * kDeviations2 * to_side) return;
+    const double of_own = (1.0 - part) * (1.0 - part);
+    const double in_depth =
+        range2_ * (of_own * own_.y() * own_.y() + of_other * other_.y() * other_.y() + ray.y() * ray.y()) +
+        aside2_;
+    if (aside2 > kDeviations2 * to_side) {
+      if (off.y() * off.y() <= kDeviations2 * in_depth) ++beside_;
+      return;
+    }
+    ++seen_;
+    const double both = range2_ * (of_other * other_.x() * other_.y() + ray.x() * ray.y());
+    const double square = in_depth * aside2 - 2.0 * both * off.x() * off.y() + to_side * off.y() * off.y();
+    if (square <= kDeviations2 * (to_side * in_depth - both * both)) put(near);
+  }
+
+  /// Of so many points around.
+  [[nodiscard]] bool is_wire(std::size_t around) const {
+    constexpr std::size_t kFewest = 2, kPart = 16, kBeside = 3;
+    constexpr double kMostly = 2.0 / 3.0;
+    const std::size_t others = on_ - 1;  // without the one that the line goes through anyway
+    return others >= kFewest && others * kPart >= around && kBeside * beside_ <= others &&
+           static_cast<double>(others) >= kMostly * static_cast<double>(seen_) && is_on_it();
+  }
+
+ private:
+  /// To the side, and in depth.
+  [[nodiscard]] Eigen::Vector2d across(const Eigen::Vector3d& vector) const {
+    return {side_.dot(vector), depth_.dot(vector)};
+  }
+
+  void put(const NearWire& near) {
+    const double along = near.offset.dot(direction_), depth = near.offset.dot(depth_);
+    ++on_;
+    along_ += along, depth_sum_ += depth;
+    along_along_ += along * along, along_depth_ += along * depth;
+  }
+
+  /// Whether the point itself is within the noise of the line through the others, in depth.
+  [[nodiscard]] bool is_on_it() const {
+    const auto count = static_cast<double>(on_);
+    const double along = along_ / count, depth = depth_sum_ / count;
+    const double spread = along_along_ / count - along * along;
+    if (!(spread > 0.0)) return false;
+    const double off = depth - along * (along_depth_ / count - along * depth) / spread;
+    const double leverage = (1.0 + along * along / spread) / count;
+    return off * off <= kDeviations2 * range2_ * own_.y() * own_.y() * (1.0 + leverage);
+  }
+
+  double length_;
+  Eigen::Vector3d direction_, side_, depth_;
+  Eigen::Vector2d own_, other_;  // rays
+  double range2_, aside2_;
+  std::size_t on_ = 0, seen_ = 0, beside_ = 0;
+  double along_ = 0.0, depth_sum_ = 0.0, along_along_ = 0.0, along_depth_ = 0.0;
+};
+
+}  // namespace
+
+bool is_on_wire(NeighbourSearch& search, std::size_t place, double spacing, double reach) {
+  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place)).normalized();
+  const std::vector<NearWire> others = around(search, place, reach);
+  const auto squared = [](double value) { return value * value; };
+  for (const NearWire& other : others) {
+    const double length = other.offset.norm();
+    if (!(length > spacing) || std::abs(other.offset.dot(ray)) > kWireAslant * length) continue;
+    WireTrial trial(other, ray, squared(kRangeSigma * spacing), squared(kAsideSigma * spacing));
+    for (const NearWire& near : others)
+      if (&near != &other) trial.add(near);
+    if (trial.is_wire(others.size())) return true;
+  }
+  return false;
+}
+
+}  // namespace ray
