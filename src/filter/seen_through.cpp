@@ -84,6 +84,7 @@ void SeenThrough::each_cube_of_ball(const Eigen::Vector3d& point, const Visit& v
         const auto added = numbers_.block(place.block).add(place.key);
         if (added.is_new) {
           bricks_.emplace_back();
+          numbers_of_bricks_.push_back({brick_of(cube.x), brick_of(cube.y), brick_of(cube.z)});
           *added.value = static_cast<std::uint32_t>(bricks_.size());
         }
         visit(Cube{*added.value - 1, in_brick(cube.z), bit_of(cube)});
@@ -100,6 +101,7 @@ SeenThrough::SeenThrough(std::vector<Eigen::Vector3d> points, double radius)
     : points_(std::move(points)), passes_(points_.size()), radius_(radius), width_(2.0 * radius) {
   for (const Eigen::Vector3d& point : points_)
     each_cube_of_ball(point, [&](const Cube& cube) { bricks_[cube.brick].cubes[cube.layer] |= cube.bit; });
+  mark_bricks();
   std::uint32_t lists = 0;
   for (Brick& brick : bricks_)
     for (std::size_t layer = 0; layer < brick.cubes.size(); ++layer) {
@@ -120,6 +122,25 @@ SeenThrough::SeenThrough(std::vector<Eigen::Vector3d> points, double radius)
     });
 }
 
+std::uint64_t SeenThrough::hash_of(const VoxelIndex& number) {
+  std::uint64_t hash = static_cast<std::uint64_t>(number.x) * 0x9e3779b97f4a7c15 +
+                       static_cast<std::uint64_t>(number.y) * 0xc2b2ae3d27d4eb4f +
+                       static_cast<std::uint64_t>(number.z) * 0x165667b19e3779f9;
+  hash ^= hash >> 32;
+  hash *= 0xd6e8feb86659fd93;
+  return hash >> 24;
+}
+
+/// Sixteen bits for each brick, so that most others are known to be empty by one look.
+void SeenThrough::mark_bricks() {
+  maybe_.resize(std::bit_ceil(bricks_.size() / 4 + 1));
+  for (const VoxelIndex& number : numbers_of_bricks_) {
+    const std::uint64_t hash = hash_of(number) & (64 * maybe_.size() - 1);
+    maybe_[hash / 64] |= std::uint64_t{1} << (hash % 64);
+  }
+  numbers_of_bricks_ = std::vector<VoxelIndex>();
+}
+
 void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, bool bounded) {
   if (points_.empty()) return;
   const double length = (end - start).norm();
@@ -136,6 +157,7 @@ void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, 
 
 void SeenThrough::visit_brick(const VoxelIndex& number, const Eigen::Vector3d& start,
                               const Eigen::Vector3d& direction, double in, double out) {
+  if (!may_have(number)) return;
   const VoxelPlace place = voxel_place(number);
   const KeyTable<std::uint32_t>* block = numbers_.find_block(place.block);
   const std::uint32_t* found = block == nullptr ? nullptr : block->find(place.key);

@@ -17,7 +17,7 @@ namespace ray {
 /// further on than where it does: what hits the surface on which the point lies, and what hits one beside it,
 /// does not.
 ///
-/// Memory: 28 bytes a point, 8 for each of the up to 8 cubes that its ball touches, and some 130 for
+/// Memory: 28 bytes a point, 8 for each of the up to 8 cubes that its ball touches, and some 150 for
 /// each brick of 8³ cubes.
 class SeenThrough {
  public:
@@ -47,17 +47,25 @@ class SeenThrough {
   template <class Visit>
   void each_cube_of_ball(const Eigen::Vector3d& point, const Visit& visit);
   [[nodiscard]] std::uint32_t list_of(const Cube& cube) const;
+  void mark_bricks();
+  [[nodiscard]] bool may_have(const VoxelIndex& number) const {
+    const std::uint64_t hash = hash_of(number) & (64 * maybe_.size() - 1);
+    return (maybe_[hash / 64] >> (hash % 64) & 1) != 0;
+  }
+  static std::uint64_t hash_of(const VoxelIndex& number);
   void visit_brick(const VoxelIndex& number, const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                    double in, double out);
 
   std::vector<Eigen::Vector3d> points_;
   std::vector<std::uint32_t> passes_;
   double radius_;
-  double width_;                            // of a cube
-  VoxelTable<std::uint32_t> numbers_;       // of bricks, from 1
-  std::vector<Brick> bricks_;               // by number
-  std::vector<std::uint32_t> list_begins_;  // in listed_, of each cube with points
-  std::vector<std::uint32_t> listed_;       // points, in as many lists as their balls touch cubes
+  double width_;                               // of a cube
+  VoxelTable<std::uint32_t> numbers_;          // of bricks, from 1
+  std::vector<VoxelIndex> numbers_of_bricks_;  // while they are made
+  std::vector<std::uint64_t> maybe_;           // bits by the hash of a brick: 0 where there is none
+  std::vector<Brick> bricks_;                  // by number
+  std::vector<std::uint32_t> list_begins_;     // in listed_, of each cube with points
+  std::vector<std::uint32_t> listed_;          // points, in as many lists as their balls touch cubes
 };
 
 }  // namespace ray
