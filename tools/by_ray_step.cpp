@@ -135,6 +135,7 @@ std::size_t SteppedSource::decode(const RawChunk& raw, RayCloud& rays) const {
     else
       settled = stage.mirror.reflect(rays);
   }
+  if (!settled) settled_ = false;
   return 0;
 }
 
@@ -155,7 +156,11 @@ void SteppedSink::consume_rows(RayCloud& rays, std::span<const std::uint32_t> ro
 }
 
 void SteppedSink::consume(RayCloud& rays, RawChunk& raw) const {
-  mirror_->reflect(rays);
+  // These rays have been decoded, so what is known of all so far is true of them.
+  if (from_ != nullptr && from_->is_settled())
+    mirror_->reflect_settled(rays);
+  else
+    mirror_->reflect(rays);
   step_->apply(rays);
   sink_->consume(rays, raw);
 }

@@ -7,6 +7,7 @@
 
 #include <raycloud/io/ply_channel.h>
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -84,6 +85,8 @@ class SteppedSource final : public RaySource {
   std::size_t decode(const RawChunk& raw, RayCloud& rays) const override;
   void rewind() override;
 
+  /// Whether the places of all rays so far would stay as they are in another file of that precision.
+  [[nodiscard]] bool is_settled() const { return settled_; }
   /// Of step number `one`.
   [[nodiscard]] const StepReport& report(std::size_t one) const { return stages_[one].step.report(); }
 
@@ -96,15 +99,17 @@ class SteppedSource final : public RaySource {
   };
   std::unique_ptr<RaySource> source_;
   std::deque<Stage> stages_;
+  mutable std::atomic<bool> settled_ = true;
 };
 
 /// Lets rays go through a step on their way to a sink.
 class SteppedSink final : public RaySink {
  public:
-  /// `mirror` is what comes before the step; `sink` is made for what comes after it.
+  /// `mirror` is what comes before the step; `sink` is made for what comes after it. `from`, if there is one,
+  /// is where the rays come from, with their places as they were.
   SteppedSink(std::unique_ptr<StepMirror> mirror, std::unique_ptr<ByRayStep> step,
-              std::unique_ptr<RaySink> sink)
-      : mirror_(std::move(mirror)), step_(std::move(step)), sink_(std::move(sink)) {}
+              std::unique_ptr<RaySink> sink, const SteppedSource* from)
+      : mirror_(std::move(mirror)), step_(std::move(step)), sink_(std::move(sink)), from_(from) {}
 
   void encode(const RayCloud& rays, RawChunk& raw) const override;
   void consume(RayCloud& rays, RawChunk& raw) const override;
@@ -117,6 +122,7 @@ class SteppedSink final : public RaySink {
   std::unique_ptr<StepMirror> mirror_;
   std::unique_ptr<ByRayStep> step_;
   std::unique_ptr<RaySink> sink_;
+  const SteppedSource* from_;
 };
 
 }  // namespace ray::tools

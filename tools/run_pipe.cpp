@@ -147,17 +147,19 @@ class Section {
     // One of them speaks for all.
     Context context = context_;
     if (i > 0) context.progress = nullptr;
-    reports_[driver - first_] = drive(context, i, *source, output);
+    reports_[driver - first_] = drive(context, i, *source, stepped, output);
     for (std::size_t one = 0; one < driver - first; ++one)
       reports_[first + one - first_] = stepped->report(one);
   }
 
-  StepReport drive(const Context& context, std::size_t i, RaySource& source, const path& output) {
+  /// `stepped` is the source if it is one of those.
+  StepReport drive(const Context& context, std::size_t i, RaySource& source, const SteppedSource* stepped,
+                   const path& output) {
     const PipeStep& step = steps_[stages_[i].driver];
     std::vector<std::unique_ptr<RaySink>> sinks(step.step->outputs.size());
     const SinkMaker make = [&](std::size_t number, const CloudInfo& given) -> RaySink& {
       if (number == step.output)
-        sinks[number] = next_sink(i, given, output);
+        sinks[number] = next_sink(i, given, stepped, output);
       else
         sinks[number] = std::make_unique<NoSink>();
       return *sinks[number];
@@ -182,10 +184,13 @@ class Section {
   }
 
   /// For the output of the driver of stage `i` that goes on.
-  std::unique_ptr<RaySink> next_sink(std::size_t i, const CloudInfo& given, const path& output) {
+  std::unique_ptr<RaySink> next_sink(std::size_t i, const CloudInfo& given, const SteppedSource* stepped,
+                                     const path& output) {
     if (i + 1 == stages_.size()) {
       written_.clear();
-      return final_sink(stages_[i].driver, given, output);
+      const PipeStep& driver = steps_[stages_[i].driver];
+      const bool keeps = driver.step->keeps_places != nullptr && driver.step->keeps_places(driver.match);
+      return final_sink(stages_[i].driver, given, keeps ? stepped : nullptr, output);
     }
     OutputPrecision& precision = lessons_.precision[stages_[i].driver];
     const PipeStep& step = steps_[stages_[i].driver];
@@ -196,8 +201,10 @@ class Section {
     return precision.watch(step.output, std::move(channel.sink));
   }
 
-  /// For what step number `from` gives, through the steps behind it, into the file.
-  std::unique_ptr<RaySink> final_sink(std::size_t from, const CloudInfo& given, const path& output) {
+  /// For what step number `from` gives, through the steps behind it, into the file. `places` is where the
+  /// places come from, if the step leaves them as they are.
+  std::unique_ptr<RaySink> final_sink(std::size_t from, const CloudInfo& given, const SteppedSource* places,
+                                      const path& output) {
     OutputPrecision& precision = lessons_.precision[from];
     const PipeStep& step = steps_[from];
     if (from + 1 == end_) {
@@ -208,8 +215,10 @@ class Section {
     auto mirror = std::make_unique<StepMirror>(given, step, precision);
     auto next = std::make_unique<ByRayStep>(mirror->info(), steps_[from + 1]);
     written_.push_back(next.get());
-    auto sink = final_sink(from + 1, next->info(), output);
-    return std::make_unique<SteppedSink>(std::move(mirror), std::move(next), std::move(sink));
+    auto sink = final_sink(from + 1, next->info(), nullptr, output);
+    const bool same = places != nullptr && places->info().precision == mirror->info().precision;
+    return std::make_unique<SteppedSink>(std::move(mirror), std::move(next), std::move(sink),
+                                         same ? places : nullptr);
   }
 
   static Ending ending_of(const std::exception_ptr& error) {

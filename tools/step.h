@@ -43,7 +43,7 @@ struct Step {
   /// Whether each ray is treated by itself, so that the step may be run on any piece of the cloud alone;
   /// absent: never.
   bool (*by_ray)(const cli::Match&) = nullptr;
-  /// Of a step by ray: whether starts, ends and times stay what they are; absent: they do not.
+  /// Whether starts, ends and times of the rays that go on stay what they are; absent: they do not.
   bool (*keeps_places)(const cli::Match&) = nullptr;
   bool tells_count = false;  ///< whether its sink is told the number of rays of the source (RaySink::amend)
 };

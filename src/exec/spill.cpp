@@ -73,9 +73,13 @@ void Spill::read(std::size_t stream, void* data, std::size_t bytes) {
   while (bytes > 0) {
     const std::uint64_t number = from.read / page_bytes_;
     const std::size_t at = from.read % page_bytes_;
-    if (from.loaded != number) load_page(from, number);
     const std::size_t part = std::min(bytes, page_bytes_ - at);
-    std::memcpy(to, from.page.data() + at, part);
+    if (part == page_bytes_ && number < from.pages.size() && from.loaded != number) {
+      read_file(from.pages[number], to, part);  // a whole page needs no copy
+    } else {
+      if (from.loaded != number) load_page(from, number);
+      std::memcpy(to, from.page.data() + at, part);
+    }
     to += part;
     bytes -= part;
     from.read += part;
@@ -93,14 +97,17 @@ void Spill::load_page(Stream& stream, std::uint64_t number) {
   }
   stream.page.resize(page_bytes_);
   const std::size_t wanted = std::min<std::uint64_t>(page_bytes_, stream.size - number * page_bytes_);
-  for (std::size_t got = 0; got < wanted;) {
-    const ssize_t part =
-        pread(file_, stream.page.data() + got, wanted - got, static_cast<off_t>(stream.pages[number] + got));
+  read_file(stream.pages[number], stream.page.data(), wanted);
+  stream.loaded = number;
+}
+
+void Spill::read_file(std::uint64_t from, std::byte* to, std::size_t bytes) const {
+  for (std::size_t got = 0; got < bytes;) {
+    const ssize_t part = pread(file_, to + got, bytes - got, static_cast<off_t>(from + got));
     if (part < 0 && errno == EINTR) continue;
     if (part <= 0) throw_spill_error("read");
     got += static_cast<std::size_t>(part);
   }
-  stream.loaded = number;
 }
 
 void Spill::drop(std::size_t stream) {

@@ -24,9 +24,14 @@ void* granted(void* block, std::size_t bytes) {
   return bytes > largest_block ? nullptr : std::realloc(block, bytes);
 }
 
+/// Zeros: a JPEG may name a table that it never gives, and stb would follow whatever is there.
+void* granted_zeros(std::size_t bytes) {
+  return bytes > largest_block ? nullptr : std::calloc(bytes, 1);
+}
+
 }  // namespace
 
-#define STBI_MALLOC(bytes) granted(nullptr, bytes)
+#define STBI_MALLOC(bytes) granted_zeros(bytes)
 #define STBI_REALLOC(block, bytes) granted(block, bytes)
 #define STBI_FREE(block) std::free(block)
 #define STB_IMAGE_IMPLEMENTATION

@@ -79,7 +79,10 @@ StepReport run(const Match& match, const Context& context, RaySource& source, co
 
 }  // namespace
 
-const Step kDecimateStep{
-    .command = kCommand, .outputs = {{"", "_decimated"}}, .run = run, .tells_count = true};
+const Step kDecimateStep{.command = kCommand,
+                         .outputs = {{"", "_decimated"}},
+                         .run = run,
+                         .keeps_places = [](const Match&) { return true; },
+                         .tells_count = true};
 
 }  // namespace ray::tools

@@ -37,6 +37,7 @@ class Spill {
   };
   void write_page(Stream& stream);
   void load_page(Stream& stream, std::uint64_t number);
+  void read_file(std::uint64_t from, std::byte* to, std::size_t bytes) const;
 
   std::size_t page_bytes_;
   int file_ = -1;

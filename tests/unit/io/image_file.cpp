@@ -261,6 +261,24 @@ TEST(ReadImage, TakesNoMemoryForAbsurdSizes) {
   EXPECT_EQ(reading(scratch.path("a.png")), ErrorCode::file_format);
 }
 
+TEST(ReadImage, AJpegThatNamesTablesItDoesNotGive) {
+  const Scratch scratch;
+  const auto path = scratch.path("a.jpg");
+  write_image(path, picture(21, 13));
+  const std::string whole = read_file(path);
+  std::size_t tables = 0;
+  for (std::size_t at = 0; at + 4 < whole.size(); ++at) {
+    if (whole.compare(at, 2, "\xff\xc4") != 0) continue;
+    ++tables;
+    std::string bytes = whole;
+    bytes[at + 4] = static_cast<char>(bytes[at + 4] ^ 3);  // the number of the table
+    write_file(path, bytes);
+    const ErrorCode code = reading(path);
+    EXPECT_TRUE(code == ErrorCode::cancelled || code == ErrorCode::file_format);
+  }
+  EXPECT_GE(tables, 1U);
+}
+
 RC_GTEST_PROP(ReadImage, SurvivesAnyChangedByte, ()) {
   static const Scratch scratch;
   const auto extension = *rc::gen::element<std::string>(".png", ".jpg", ".bmp", ".tga");
