@@ -39,7 +39,7 @@ constexpr std::uint32_t part_of(std::int64_t x, std::int64_t y, std::int64_t z) 
 
 /// For each cell of a brick and each of the eight bricks that hold the cells around it, two along each axis:
 /// a bit for each of their cells that is around.
-constexpr auto cells_around() {
+auto cells_around() {
   std::array<std::array<std::uint64_t, 8>, 64> bits{};
   for (int at = 0; at < 64; ++at)
     for (int x = -kReach; x <= kReach; ++x)
@@ -55,7 +55,7 @@ constexpr auto cells_around() {
         }
   return bits;
 }
-constexpr auto kCellsAround = cells_around();
+const auto kCellsAround = cells_around();  // too many steps for a compiler
 
 /// Points in buckets by the hash of their brick, sorted by cell. Points in one cell are always near each
 /// other, those near each other never more than kReach cells apart. A bucket may hold points of several
