@@ -1,3 +1,6 @@
+#include "ray_path.h"
+
+#include <raycloud/exec/parallel.h>
 #include <raycloud/volume/free_space.h>
 
 #include <algorithm>
@@ -17,21 +20,13 @@ void count(std::uint16_t& counter) {
   }
 }
 
-template <class Better>
-void improve(double& value, double by, const Better& better) {
-  const std::atomic_ref<double> atomic(value);
-  double known = atomic.load(std::memory_order_relaxed);
-  while (better(by, known) && !atomic.compare_exchange_weak(known, by, std::memory_order_relaxed)) {
-  }
-}
-
-void add_look(std::uint64_t& looks, std::uint64_t look) {
-  const std::atomic_ref<std::uint64_t> atomic(looks);
+void add_look(std::uint16_t& looks, std::uint16_t look) {
+  const std::atomic_ref<std::uint16_t> atomic(looks);
   if ((atomic.load(std::memory_order_relaxed) & look) == 0) atomic.fetch_or(look, std::memory_order_relaxed);
 }
 
 /// The bit of a look: a piece of time, and one of 26 directions.
-std::uint64_t look_of(double time, const Eigen::Vector3d& way, double look_time) {
+std::uint16_t look_of(double time, const Eigen::Vector3d& way, double look_time) {
   const double most = way.cwiseAbs().maxCoeff();
   const Eigen::Vector3d side = most > 0.0 ? Eigen::Vector3d(way / most) : way;
   const auto third = [](double v) { return std::uint64_t{v > 0.5 ? 2U : v < -0.5 ? 0U : 1U}; };
@@ -39,70 +34,104 @@ std::uint64_t look_of(double time, const Eigen::Vector3d& way, double look_time)
   std::uint64_t hash = when * 27 + third(side.x()) + 3 * third(side.y()) + 9 * third(side.z());
   hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9ULL;
   hash = (hash ^ hash >> 27) * 0x94d049bb133111ebULL;
-  return std::uint64_t{1} << (hash >> 58);
+  return static_cast<std::uint16_t>(1U << (hash >> 60));
 }
 
-void hit(Evidence& evidence, double time) {
-  count(evidence.hits);
-  improve(evidence.first_hit, time, std::less<>());
-  improve(evidence.last_hit, time, std::greater<>());
-}
-
-struct Passing {
-  Eigen::Vector3d start;
-  Eigen::Vector3d end;
-  double length;
-  double time;
-  bool bounded;
-};
-
-bool proves_empty(const Ellipsoid& ellipsoid, const Chord& chord, const Passing& ray,
-                  const PassGuard& guard) {
-  if (chord.miss2 > guard.most_miss2) return false;
-  const double beyond = (1.0 - chord.leaves) * ray.length;
-  if (ray.bounded && beyond < guard.beyond) return false;
-  if (!ellipsoid.is_flat()) return true;
-  const double sine = std::abs(ellipsoid.normal.dot(ray.end - ray.start)) / ray.length;
-  return sine >= guard.least_sine && (!ray.bounded || beyond * sine >= guard.depth);
-}
-
-}  // namespace
-
-void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<Evidence> evidence) {
+/// Calls `hit(slot, i)` for each ellipsoid that the end of bounded ray `i` is in.
+template <class Hit>
+void each_hit(const EllipsoidTree& tree, const RayCloud& rays, const Hit& hit) {
   std::vector<std::uint32_t> slots;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.bounded[i] == 0) continue;
     tree.near_point(rays.ends[i], slots);
     for (const std::uint32_t slot : slots)
-      if (is_inside(tree.at_slot(slot), rays.ends[i])) hit(evidence[slot], rays.times[i]);
+      if (is_inside(tree.at_slot(slot), rays.ends[i])) hit(slot, i);
   }
 }
 
+/// Parts hits in order of time at their longest pauses.
+void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evidence& evidence) {
+  constexpr std::size_t kPauses = Evidence::kEpisodes - 1;
+  std::array<std::size_t, kPauses> after{};  // the hits after which there is a pause, the longest pause first
+  std::size_t pauses = 0;
+  const auto length = [&](std::size_t i) { return ticks[i + 1] - ticks[i]; };
+  for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
+    if (length(i) <= look_ticks) continue;
+    std::size_t at = pauses;
+    while (at > 0 && length(after[at - 1]) < length(i))
+      --at;
+    if (at == kPauses) continue;
+    pauses = std::min(pauses + 1, kPauses);
+    for (std::size_t k = pauses - 1; k > at; --k)
+      after[k] = after[k - 1];
+    after[at] = i;
+  }
+  std::sort(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(pauses));
+  evidence.begins.fill(ticks.back());
+  evidence.ends.fill(ticks.back());
+  evidence.begins[0] = ticks.front();
+  for (std::size_t k = 0; k < pauses; ++k) {
+    evidence.ends[k] = ticks[after[k]];
+    evidence.begins[k + 1] = ticks[after[k] + 1];
+  }
+}
+
+}  // namespace
+
+void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<std::uint32_t> hits) {
+  each_hit(tree, rays, [&](std::uint32_t slot, std::size_t) {
+    std::atomic_ref<std::uint32_t>(hits[slot]).fetch_add(1, std::memory_order_relaxed);
+  });
+}
+
+HitTimes::HitTimes(std::span<const std::uint32_t> hits) : begin_(hits.size() + 1), count_(hits.size()) {
+  for (std::size_t slot = 0; slot < hits.size(); ++slot)
+    begin_[slot + 1] = begin_[slot] + hits[slot];
+  ticks_.resize(begin_.back());
+}
+
+void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale) {
+  each_hit(tree, rays, [&](std::uint32_t slot, std::size_t i) {
+    const std::uint32_t at =
+        std::atomic_ref<std::uint32_t>(count_[slot]).fetch_add(1, std::memory_order_relaxed);
+    ticks_[begin_[slot] + at] = scale.tick(rays.times[i]);
+  });
+}
+
+void HitTimes::find_episodes(const Context& context, double look_ticks, std::span<Evidence> evidence) {
+  parallel_for(context, count_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) {
+      if (count_[slot] == 0) continue;
+      const std::span<std::uint16_t> ticks(ticks_.data() + begin_[slot], count_[slot]);
+      std::sort(ticks.begin(), ticks.end());
+      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count_[slot], kMostCounted));
+      set_episodes(ticks, look_ticks, evidence[slot]);
+    }
+  });
+}
+
 void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
-                std::span<Evidence> evidence) {
+                const TimeScale& scale, std::span<Evidence> evidence) {
   std::vector<std::uint32_t> slots;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     tree.near_line(rays.starts[i], rays.ends[i], slots);
     if (slots.empty()) continue;
-    const Passing ray{rays.starts[i], rays.ends[i], (rays.ends[i] - rays.starts[i]).norm(), rays.times[i],
-                      rays.bounded[i] != 0};
-    const std::uint64_t look = look_of(ray.time, ray.end - ray.start, rule.look_time);
+    const RayPath path(rays, i);
+    const std::uint16_t look = look_of(rays.times[i], path.way(), rule.look_time);
+    const std::uint16_t tick = scale.tick(rays.times[i]);
     for (const std::uint32_t slot : slots) {
-      const Ellipsoid ellipsoid = tree.at_slot(slot);
-      const Chord chord = chord_of(ellipsoid, ray.start, ray.end);
-      if (chord.miss2 > 1.0 || !(chord.enters > 0.0 && chord.leaves < 1.0)) continue;
+      const Crossing crossing = path.cross(tree.at_slot(slot), rule.guard);
+      if (crossing == Crossing::none) continue;
       Evidence& seen = evidence[slot];
       count(seen.crossings);
-      if (!proves_empty(ellipsoid, chord, ray, rule.guard)) continue;
-      if (ray.time < seen.first_hit) {
-        count(seen.before);
-        add_look(seen.looks_before, look);
-      } else if (ray.time > seen.last_hit) {
-        count(seen.after);
-        add_look(seen.looks_after, look);
-      } else {
+      if (crossing != Crossing::proves_empty) continue;
+      const std::size_t run = seen.run_at(tick);
+      if (run == Evidence::kRuns) {
         count(seen.within);
+        continue;
       }
+      count(seen.passes[run]);
+      add_look(seen.looks[run], look);
     }
   }
 }

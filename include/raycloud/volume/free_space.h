@@ -6,8 +6,8 @@
 #include <raycloud/exec/context.h>
 #include <raycloud/volume/ellipsoid_tree.h>
 
+#include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,19 +23,47 @@ struct PassGuard {
 /// The paper's rule: whatever crosses an ellipsoid has passed it.
 inline constexpr PassGuard kEveryPass{0.0, 0.0, 0.0, 1.0};
 
-/// Rays counted by where they stand to the time in which the ellipsoid was hit. Counts end at 60 000. 48
-/// bytes.
+/// Times in 65536 steps from the first to the last of a cloud.
+class TimeScale {
+ public:
+  TimeScale(double first, double last)
+      : first_(first), per_second_(last > first ? 65535.0 / (last - first) : 0.0) {}
+  [[nodiscard]] std::uint16_t tick(double time) const {
+    return static_cast<std::uint16_t>((time - first_) * per_second_);
+  }
+  [[nodiscard]] double ticks(double seconds) const { return seconds * per_second_; }
+
+ private:
+  double first_;
+  double per_second_;
+};
+
+/// Rays counted by where they stand to the times at which the ellipsoid was hit. These are at most four
+/// episodes: the hits are parted at the three longest pauses between them, where these are longer than a
+/// look. Counts end at 60 000. 42 bytes.
 struct Evidence {
-  double first_hit = std::numeric_limits<double>::infinity();  ///< s; above last_hit where there was none
-  double last_hit = -std::numeric_limits<double>::infinity();  ///< s
-  /// A bit for each look, by its hash: rays within `look_time` of each other, from about one direction.
-  std::uint64_t looks_before = 0;
-  std::uint64_t looks_after = 0;
+  static constexpr std::size_t kEpisodes = 4;
+  /// Before the first episode, between episodes, after the last.
+  static constexpr std::size_t kRuns = kEpisodes + 1;
+
+  /// Ticks of the first and last hit of each episode; those that there are not repeat the end of the last.
+  std::array<std::uint16_t, kEpisodes> begins{};
+  std::array<std::uint16_t, kEpisodes> ends{};
   std::uint16_t hits = 0;       ///< bounded rays that end in it
   std::uint16_t crossings = 0;  ///< rays that begin before it and end behind it
-  std::uint16_t before = 0;     ///< of these, those that prove it empty, earlier than the first hit
-  std::uint16_t within = 0;     ///< between hits
-  std::uint16_t after = 0;      ///< later than the last hit
+  std::uint16_t within = 0;     ///< of these, those that prove it empty, in the time of an episode
+  std::array<std::uint16_t, kRuns> passes{};  ///< and outside of them
+  /// For each run a bit for each look, by its hash: passes of one time from about one direction.
+  std::array<std::uint16_t, kRuns> looks{};
+
+  /// Which run a time is in; kRuns: in an episode.
+  [[nodiscard]] std::size_t run_at(std::uint16_t tick) const {
+    for (std::size_t i = 0; i < kEpisodes; ++i) {
+      if (tick < begins[i]) return i;
+      if (tick <= ends[i]) return kRuns;
+    }
+    return kEpisodes;
+  }
   friend bool operator==(const Evidence&, const Evidence&) = default;
 };
 
@@ -44,13 +72,29 @@ struct CountRule {
   double look_time = 0.5;  ///< s
 };
 
-/// Adds the rays that end in ellipsoids to `hits`, `first_hit` and `last_hit`, by slot. Any number of threads
-/// may add rays at once: every step is atomic, and their order does not matter. About 0.4 µs a ray.
-void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<Evidence> evidence);
+/// Adds the rays that end in ellipsoids to `hits`, by slot. Any number of threads may add rays at once: every
+/// step is atomic, and their order does not matter. About 0.4 µs a ray.
+void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<std::uint32_t> hits);
 
-/// Adds the rays that cross ellipsoids to `crossings` and, by their time, to the others. Called when all hits
-/// are known. Threads as above. About 1 µs a ray.
+/// The times of all hits, to find the episodes from.
+class HitTimes {
+ public:
+  /// For so many hits of each slot.
+  explicit HitTimes(std::span<const std::uint32_t> hits);
+  /// Adds the same rays that were added to those. Threads as above.
+  void add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale);
+  /// Called when all are there: sets `hits` and the episodes.
+  void find_episodes(const Context& context, double look_ticks, std::span<Evidence> evidence);
+
+ private:
+  std::vector<std::uint64_t> begin_;
+  std::vector<std::uint32_t> count_;
+  std::vector<std::uint16_t> ticks_;
+};
+
+/// Adds the rays that cross ellipsoids to `crossings` and, by their time, to the others. Called when all
+/// episodes are known. Threads as above. About 1 µs a ray.
 void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
-                std::span<Evidence> evidence);
+                const TimeScale& scale, std::span<Evidence> evidence);
 
 }  // namespace ray

@@ -12,6 +12,8 @@
 namespace ray {
 namespace {
 
+const TimeScale kScale(-10.0, 20.0);
+
 struct Scene {
   std::vector<Ellipsoid> ellipsoids;
   RayCloud rays;
@@ -49,7 +51,7 @@ Scene random_scene(std::uint64_t seed, std::size_t ellipsoids, std::size_t rays,
                              : point(i, 28, 16.0);
     if (random.below(50, i, 31) == 0) scene.rays.ends[i] = scene.rays.starts[i];
     if (random.below(20, i, 32) == 0) scene.rays.ends[i].x() = scene.rays.starts[i].x();
-    scene.rays.times[i] = random.uniform(i, 33) * 30.0 - 10.0;
+    scene.rays.times[i] = -10.0 + 30.0 / 65536.0 * (0.5 + static_cast<double>(random.below(65536, i, 33)));
     scene.rays.bounded[i] = random.below(4, i, 34) == 0 ? 0 : 1;
   }
   return scene;
@@ -66,6 +68,7 @@ EllipsoidTree tree_of(const Context& context, const std::vector<Ellipsoid>& elli
 std::vector<Evidence> counted(const Context& context, const Scene& scene, const CountRule& rule) {
   const EllipsoidTree tree = tree_of(context, scene.ellipsoids);
   std::vector<Evidence> evidence(tree.size());
+  std::vector<std::uint32_t> hits(tree.size());
   constexpr std::size_t kChunk = 37;
   const auto each = [&](const auto& add) {
     parallel_for(context, scene.rays.size(), kChunk, [&](std::size_t begin, std::size_t end) {
@@ -77,8 +80,11 @@ std::vector<Evidence> counted(const Context& context, const Scene& scene, const 
       add(chunk);
     });
   };
-  each([&](const RayCloud& rays) { add_hits(tree, rays, evidence); });
-  each([&](const RayCloud& rays) { add_passes(tree, rays, rule, evidence); });
+  each([&](const RayCloud& rays) { add_hits(tree, rays, hits); });
+  HitTimes times(hits);
+  each([&](const RayCloud& rays) { times.add(tree, rays, kScale); });
+  times.find_episodes(context, kScale.ticks(rule.look_time), evidence);
+  each([&](const RayCloud& rays) { add_passes(tree, rays, rule, kScale, evidence); });
   std::vector<Evidence> by_index;
   for (std::size_t i = 0; i < tree.size(); ++i)
     by_index.push_back(evidence[tree.slot(i)]);
@@ -96,15 +102,38 @@ struct Ball {
   }
 };
 
-Evidence plainly_counted(const Ellipsoid& ellipsoid, const RayCloud& rays, const CountRule& rule) {
-  Evidence sum;
-  const Ball ball(ellipsoid);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.bounded[i] == 0 || ball.at(rays.ends[i]).squaredNorm() > 1.0L) continue;
-    ++sum.hits;
-    sum.first_hit = std::min(sum.first_hit, rays.times[i]);
-    sum.last_hit = std::max(sum.last_hit, rays.times[i]);
+/// Pauses between hits that are as long as the third longest, but not longer than a look, are not looked for.
+std::vector<std::pair<double, double>> plain_episodes(std::vector<double> times, double look_time) {
+  std::sort(times.begin(), times.end());
+  std::vector<double> pauses;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    pauses.push_back(times[i] - times[i - 1]);
+  std::sort(pauses.rbegin(), pauses.rend());
+  double least = look_time;
+  if (pauses.size() > 3) least = std::max(least, pauses[3]);
+  std::vector<std::pair<double, double>> episodes;
+  for (const double time : times) {
+    if (episodes.empty() || time - episodes.back().second > least)
+      episodes.emplace_back(time, time);
+    else
+      episodes.back().second = time;
   }
+  return episodes;
+}
+
+struct PlainCounts {
+  std::size_t hits = 0, crossings = 0, within = 0;
+  std::map<std::size_t, std::size_t> passes;  // 0: before; i: after episode i
+};
+
+PlainCounts plainly_counted(const Ellipsoid& ellipsoid, const RayCloud& rays, const CountRule& rule) {
+  PlainCounts sum;
+  const Ball ball(ellipsoid);
+  std::vector<double> times;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0 && ball.at(rays.ends[i]).squaredNorm() <= 1.0L) times.push_back(rays.times[i]);
+  sum.hits = times.size();
+  const auto episodes = plain_episodes(times, rule.look_time);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto from = ball.at(rays.starts[i]), to = ball.at(rays.ends[i]);
     const auto way = to - from;
@@ -123,8 +152,18 @@ Evidence plainly_counted(const Ellipsoid& ellipsoid, const RayCloud& rays, const
       if (sine < rule.guard.least_sine || (rays.bounded[i] != 0 && beyond * sine < rule.guard.depth))
         continue;
     }
-    const double time = rays.times[i];
-    ++(time < sum.first_hit ? sum.before : time > sum.last_hit ? sum.after : sum.within);
+    std::size_t run = 0;
+    bool within = false;
+    for (const auto& [first, last] : episodes) {
+      within = within || (rays.times[i] >= first && rays.times[i] <= last);
+      if (rays.times[i] > last) ++run;
+    }
+    ++(within ? sum.within : sum.passes[run]);
+  }
+  // The run after the last episode has the last number.
+  if (episodes.size() < Evidence::kEpisodes && sum.passes.contains(episodes.size())) {
+    sum.passes[Evidence::kEpisodes] = sum.passes[episodes.size()];
+    sum.passes.erase(episodes.size());
   }
   return sum;
 }
@@ -132,14 +171,14 @@ Evidence plainly_counted(const Ellipsoid& ellipsoid, const RayCloud& rays, const
 void expect_same_counts(const std::vector<Evidence>& fast, const Scene& scene, const CountRule& rule) {
   std::size_t crossings = 0;
   for (std::size_t i = 0; i < fast.size(); ++i) {
-    const Evidence plain = plainly_counted(scene.ellipsoids[i], scene.rays, rule);
+    const PlainCounts plain = plainly_counted(scene.ellipsoids[i], scene.rays, rule);
     ASSERT_EQ(fast[i].hits, plain.hits) << i;
-    ASSERT_EQ(fast[i].first_hit, plain.first_hit) << i;
-    ASSERT_EQ(fast[i].last_hit, plain.last_hit) << i;
     ASSERT_EQ(fast[i].crossings, plain.crossings) << i;
-    ASSERT_EQ(fast[i].before, plain.before) << i;
+    if (plain.hits == 0) continue;
     ASSERT_EQ(fast[i].within, plain.within) << i;
-    ASSERT_EQ(fast[i].after, plain.after) << i;
+    for (std::size_t run = 0; run < Evidence::kRuns; ++run)
+      ASSERT_EQ(fast[i].passes[run], plain.passes.contains(run) ? plain.passes.at(run) : 0U)
+          << i << " " << run;
     crossings += plain.crossings;
   }
   if (fast.size() > 100) {
