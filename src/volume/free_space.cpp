@@ -43,9 +43,9 @@ void each_hit(const EllipsoidTree& tree, const RayCloud& rays, const Hit& hit) {
   std::vector<std::uint32_t> slots;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.bounded[i] == 0) continue;
-    tree.near_point(rays.ends[i], slots);
+    tree.holding(rays.ends[i], slots);
     for (const std::uint32_t slot : slots)
-      if (is_inside(tree.at_slot(slot), rays.ends[i])) hit(slot, i);
+      hit(slot, i);
   }
 }
 

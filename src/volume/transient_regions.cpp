@@ -101,9 +101,7 @@ class Regions {
       std::vector<std::uint32_t> around;
       for (std::size_t i = begin; i < end; ++i) {
         if (!wanted(i)) continue;
-        const Eigen::Vector3d centre = tree_.at_slot(static_cast<std::uint32_t>(i)).centre;
-        tree_.near_point(centre, around);
-        std::erase_if(around, [&](std::uint32_t slot) { return !is_inside(tree_.at_slot(slot), centre); });
+        tree_.holding(tree_.at_slot(static_cast<std::uint32_t>(i)).centre, around);
         work(i, around);
       }
     });

@@ -38,12 +38,13 @@ class EllipsoidTree {
   /// As it was set: bit for bit, where it is within 100 m of its place.
   [[nodiscard]] Ellipsoid at_slot(std::uint32_t slot) const;
 
-  /// Fills `slots` with those of all ellipsoids that the line between the two points meets, in no order that
-  /// could be relied on, and of a few that it misses narrowly. Thread-safe.
+  /// Fills `slots` with those of all ellipsoids that the line between the two points crosses: it meets them
+  /// and neither begins nor ends inside. And of a few more that it almost does. In no order that could be
+  /// relied on. Thread-safe.
   void near_line(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                  std::vector<std::uint32_t>& slots) const;
-  /// Of all ellipsoids that hold the point, and of a few that do not quite.
-  void near_point(const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const;
+  /// Of exactly those ellipsoids that hold the point. Thread-safe.
+  void holding(const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const;
 
  private:
   static constexpr std::size_t kPack = 8;
@@ -62,6 +63,7 @@ class EllipsoidTree {
   };
   struct Line;
   void meet_pack(std::size_t pack, const Line& line, std::vector<std::uint32_t>& slots) const;
+  void hold_pack(std::size_t pack, const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const;
 
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double slack_ = 0.0;         ///< m, by which boxes are larger than what they hold
