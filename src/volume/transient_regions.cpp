@@ -26,21 +26,26 @@ void raise(float& value, float to) {
   }
 }
 
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+float quantile(std::vector<float>& values, std::size_t tenths) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(tenths * values.size() / 10);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 class Regions {
  public:
   Regions(const Context& context, const EllipsoidTree& tree, std::span<const Evidence> evidence,
           const Contradiction& which)
-      : context_(context), tree_(tree), own_(evidence.size()), hints_(evidence.size()) {
+      : context_(context),
+        tree_(tree),
+        own_(evidence.size()),
+        hints_(evidence.size()),
+        opaque_(evidence.size()) {
     parallel_for(context, evidence.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         own_[i] = beyond(transience_of(evidence[i]), kByChance, which);
         hints_[i] = beyond(hint_of(evidence[i]), kHintByChance, which);
+        opaque_[i] = opacity_while_there(evidence[i]) >= kOpaque ? 1 : 0;
       }
     });
   }
@@ -49,7 +54,9 @@ class Regions {
     scores_.resize(own_.size());
     each([&](std::size_t i) { return own_[i] > 0.0F; },
          [&](std::size_t i, std::span<const std::uint32_t> around) {
-           scores_[i] = std::min(own_[i], median_of(own_, around));
+           const float alone = std::min(own_[i], quantile_of(own_, around, kMedian));
+           const float together = kTogether * std::min(own_[i], quantile_of(own_, around, kLeastTenth));
+           scores_[i] = opaque_[i] != 0 ? std::max(alone, together) : alone;
          });
   }
 
@@ -84,7 +91,7 @@ class Regions {
     filled = scores_;
     each([&](std::size_t i) { return reached[i] > 0.0F || scores_[i] > 0.0F; },
          [&](std::size_t i, std::span<const std::uint32_t> around) {
-           filled[i] = std::max(scores_[i], median_of(scores_, around));
+           filled[i] = std::max(scores_[i], quantile_of(scores_, around, kMedian));
          });
     scores_ = std::move(filled);
   }
@@ -93,6 +100,9 @@ class Regions {
 
  private:
   static constexpr std::size_t kGrain = 4096;
+  static constexpr std::size_t kMedian = 5, kLeastTenth = 1;  ///< tenths
+  static constexpr float kOpaque = 0.8F;
+  static constexpr float kTogether = 3.0F;
 
   /// `work(i, around)` for each that `wanted(i)`, with the ellipsoids that its centre is in.
   template <class Wanted, class Work>
@@ -107,18 +117,20 @@ class Regions {
     });
   }
 
-  static float median_of(const std::vector<float>& of, std::span<const std::uint32_t> around) {
+  static float quantile_of(const std::vector<float>& of, std::span<const std::uint32_t> around,
+                           std::size_t tenths) {
     thread_local std::vector<float> values;
     values.clear();
     for (const std::uint32_t slot : around)
       values.push_back(of[slot]);
-    return median(values);
+    return quantile(values, tenths);
   }
 
   const Context& context_;
   const EllipsoidTree& tree_;
   std::vector<float> own_;
   std::vector<float> hints_;
+  std::vector<std::uint8_t> opaque_;
   std::vector<float> scores_;
 };
 

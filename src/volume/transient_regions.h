@@ -23,13 +23,14 @@ struct Contradiction {
 /// at once: it takes medians, minima and maxima, and multiples of them.
 ///
 /// 1. Its own transience, less what a hedge of even opacity would have by chance, but not above the median of
-///    the ellipsoids around its centre.
+///    the ellipsoids around its centre. Or, if it was opaque, three times that, but not above three times the
+///    least tenth of them: together they cover some three times its area, and so many more rays went through.
 /// 2. From where it is above 14 it spreads, three times, to ellipsoids that overlap, up to ten times their
 /// own
 ///    hint of transience, where that is above 0.7.
 /// 3. It is at least the median of the ellipsoids around its centre, whatever its own evidence.
 ///
-/// Memory: 12 bytes an ellipsoid. Time: little where nothing is transient.
+/// Memory: 13 bytes an ellipsoid. Time: little where nothing is transient.
 [[nodiscard]] std::vector<float> transient_regions(const Context& context, const EllipsoidTree& tree,
                                                    std::span<const Evidence> evidence,
                                                    const Contradiction& which);

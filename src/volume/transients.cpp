@@ -111,6 +111,12 @@ Scores scores_of(const Context& context, const EllipsoidTree& tree, std::span<co
   return scores;
 }
 
+/// Whether a run is longer than it may be by chance. Runs that are not prove nothing, whatever others do.
+bool contradicts(const Evidence& evidence, std::size_t run, bool paper) {
+  constexpr float kLongestByChance = 3.0F;
+  return paper || static_cast<float>(evidence.passes[run]) * opacity_while_there(evidence) > kLongestByChance;
+}
+
 void colour_by_evidence(Colour& colour, float opacity, std::uint16_t passes, double transience) {
   constexpr int kManyPasses = 51;
   colour.red = static_cast<std::uint8_t>(5 * std::min<int>(passes, kManyPasses));
@@ -195,7 +201,8 @@ TransientCounts split_transients(const Context& context, RaySource& source, RayS
 
   TransientWriter writer(tree, evidence, scores, rule, transient_columns(source.info().extras));
   const auto score_pass = [&](std::uint32_t slot, std::size_t run) {
-    return run >= scores.first_run && run <= scores.last_run ? scores.passes[slot] : 0.0F;
+    const bool wanted = run >= scores.first_run && run <= scores.last_run;
+    return wanted && contradicts(evidence[slot], run, rule.paper) ? scores.passes[slot] : 0.0F;
   };
   TransientCounts counts;
   counts.stream = stream_parts(
