@@ -21,6 +21,9 @@ int main(int argc, char** argv) {
     bench::print_calibration();
     bench::print_far_from_others();
   }
-  if (only.empty() || only == "transients") bench::print_transients();
+  if (only.empty() || only == "transients") {
+    bench::print_opacity();
+    bench::print_transients();
+  }
   return 0;
 }

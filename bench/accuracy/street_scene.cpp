@@ -46,11 +46,10 @@ class Shapes {
     for (int i = 0; i < kSides; ++i)
       quad(corner(i), corner(i + 1) - corner(i), Vector3d(0, 0, height));
   }
-  /// Triangles of 4 cm anywhere in a box, or in the ball within it, that face anywhere: `density` m² in a m³.
+  /// Triangles anywhere in a box, or in the ball within it, that face anywhere: `density` m² in a m³.
   void leaves(const Vector3d& low, const Vector3d& high, double density, bool ball,
-              const ray::RandomStream& random) {
-    constexpr double kSide = 0.04;
-    const double area = std::sqrt(3.0) / 4.0 * kSide * kSide;
+              const ray::RandomStream& random, double side = 0.04) {
+    const double area = std::sqrt(3.0) / 4.0 * side * side;
     const Vector3d size = high - low;
     const auto count = static_cast<std::uint64_t>(density * size.prod() / area);
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -62,7 +61,7 @@ class Shapes {
       const Vector3d u = normal.unitOrthogonal();
       const Eigen::AngleAxisd spin(2.0 * std::numbers::pi * random.uniform(i, 5), normal);
       const Eigen::AngleAxisd third(2.0 * std::numbers::pi / 3.0, normal);
-      const Vector3d a = spin * (kSide / std::sqrt(3.0) * u), b = third * a, c = third * b;
+      const Vector3d a = spin * (side / std::sqrt(3.0) * u), b = third * a, c = third * b;
       const Vector3d middle = low + place.cwiseProduct(size);
       triangle(middle + a, middle + b, middle + c);
     }
@@ -129,7 +128,7 @@ class Street {
 
   void greenery() {
     Shapes shapes;
-    shapes.leaves({-15, 6.6, 0.2}, {-3, 7.6, 1.6}, kHedgeDensity, false, {scene_.seed, "hedge"});
+    shapes.leaves({-15, 6.6, 0.2}, {-3, 7.6, 1.6}, 4.0, false, {scene_.seed, "hedge"});
     add(ray::SceneLabel::hedge, "hedge", shapes.take());
     for (const double x : {-19.0, 1.0, 12.0}) {
       shapes.pole(x, -5.2, 0.12, 3.2);
@@ -207,6 +206,21 @@ ray::Scene street_scene(std::uint64_t seed, int movers) {
   if (movers == 0) return street.take();
   street.come_and_go();
   return ray::with_movers(street.take(), movers, seed);
+}
+
+ray::Scene hedge_scene(double density, double blade) {
+  Street street(1);
+  Shapes shapes;
+  shapes.leaves(kHedgeLow, kHedgeHigh, density, false, {1, "hedge"}, blade);
+  street.add(ray::SceneLabel::hedge, "hedge", shapes.take());
+  ray::Scene scene = street.take();
+  constexpr int kNodes = 200;
+  for (int i = 0; i < kNodes; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kNodes;
+    scene.path.times.push_back(0.2 * i);
+    scene.path.positions.emplace_back(4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.0);
+  }
+  return scene;
 }
 
 }  // namespace bench

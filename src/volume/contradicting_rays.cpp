@@ -1,5 +1,6 @@
 #include "contradicting_rays.h"
 
+#include "coherent_order.h"
 #include "ray_path.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ std::vector<float> contradicting_rays(const EllipsoidTree& tree, const RayCloud&
                                       const std::function<float(std::uint32_t)>& opacity) {
   std::vector<float> scores(rays.size());
   std::vector<std::uint32_t> slots;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+  for (const std::uint32_t i : coherent_order(rays, false)) {
     tree.near_line(rays.starts[i], rays.ends[i], slots);
     if (slots.empty()) continue;
     const RayPath path(rays, i);

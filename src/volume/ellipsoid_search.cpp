@@ -15,6 +15,10 @@ namespace {
 constexpr float kRounding = 1e-6F;
 constexpr float kMargin = 1.01F;
 
+/// Numbers of eight at once; plain loops over so few are not made parallel by compilers.
+using Lanes = Eigen::Array<float, 8, 1>;
+using ConstLanes = Eigen::Map<const Lanes>;
+
 /// Parts of boxes still to be looked at. Four times as many levels as a tree of 2^32 has.
 class OpenParts {
  public:
@@ -84,19 +88,17 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
   while (!open.empty()) {
     const auto [level, number] = open.pop();
     const Boxes& boxes = levels_[level][number];
-    std::array<float, kParts> enters, leaves;
-    enters.fill(0.0F);
-    leaves.fill(reach);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = 0; i < kParts; ++i) {
-        const float a = (boxes.min[axis][i] - from[axis]) * inverse[axis];
-        const float b = (boxes.max[axis][i] - from[axis]) * inverse[axis];
-        const float near = a < b ? a : b, far = a < b ? b : a;
-        enters[i] = enters[i] > near ? enters[i] : near;
-        leaves[i] = leaves[i] < far ? leaves[i] : far;
-      }
+    Lanes enters = Lanes::Zero(), leaves = Lanes::Constant(reach);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool up = inverse[axis] > 0.0F;
+      const ConstLanes near(up ? boxes.min[axis].data() : boxes.max[axis].data());
+      const ConstLanes far(up ? boxes.max[axis].data() : boxes.min[axis].data());
+      enters = enters.max((near - from[axis]) * inverse[axis]);
+      leaves = leaves.min((far - from[axis]) * inverse[axis]);
+    }
+    const Lanes within = leaves - enters;
     for (std::size_t i = 0; i < kParts; ++i) {
-      if (!(enters[i] <= leaves[i])) continue;
+      if (!(within[static_cast<Eigen::Index>(i)] >= 0.0F)) continue;
       if (level > 0)
         open.push(level - 1, kParts * number + i);
       else
@@ -115,36 +117,33 @@ void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::
              pz = static_cast<float>(nearest.z());
   const auto start = static_cast<float>(-middle), end = static_cast<float>(line.length - middle);
   const auto [dx, dy, dz] = line.d;
-  std::array<float, kPack> way2, along, half2, rounding, meets;
-  for (std::size_t i = 0; i < kPack; ++i) {
-    const float xx = pack.shape[0][i], xy = pack.shape[1][i], xz = pack.shape[2][i], yy = pack.shape[3][i],
-                yz = pack.shape[4][i], zz = pack.shape[5][i];
-    const float wx = px - pack.centre[0][i], wy = py - pack.centre[1][i], wz = pz - pack.centre[2][i];
-    const float sx = xx * dx + xy * dy + xz * dz, sy = xy * dx + yy * dy + yz * dz,
-                sz = xz * dx + yz * dy + zz * dz;
-    const float from2 = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
-                        wz * (xz * wx + yz * wy + zz * wz);
-    const float w2 = wx * wx + wy * wy + wz * wz;
-    way2[i] = dx * sx + dy * sy + dz * sz;
-    along[i] = wx * sx + wy * sy + wz * sz;
-    rounding[i] = 2.0F * kRounding * (xx + yy + zz) * (w2 * way2[i] + from2);
-    half2[i] = way2[i] - from2 * way2[i] + along[i] * along[i];
-    meets[i] = half2[i] + rounding[i] + (kMargin - 1.0F) * way2[i];
-  }
-  for (std::size_t i = 0; i < kPack; ++i) {
+  const ConstLanes xx(pack.shape[0].data()), xy(pack.shape[1].data()), xz(pack.shape[2].data()),
+      yy(pack.shape[3].data()), yz(pack.shape[4].data()), zz(pack.shape[5].data());
+  const Lanes wx = px - ConstLanes(pack.centre[0].data()), wy = py - ConstLanes(pack.centre[1].data()),
+              wz = pz - ConstLanes(pack.centre[2].data());
+  const Lanes sx = xx * dx + xy * dy + xz * dz, sy = xy * dx + yy * dy + yz * dz,
+              sz = xz * dx + yz * dy + zz * dz;
+  const Lanes from2 = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
+                      wz * (xz * wx + yz * wy + zz * wz);
+  const Lanes way2 = dx * sx + dy * sy + dz * sz;
+  const Lanes along = wx * sx + wy * sy + wz * sz;
+  const Lanes rounding = 2.0F * kRounding * (xx + yy + zz) * ((wx * wx + wy * wy + wz * wz) * way2 + from2);
+  const Lanes half2 = way2 - from2 * way2 + along * along;
+  const Lanes meets = half2 + rounding + (kMargin - 1.0F) * way2;
+  for (Eigen::Index i = 0; i < meets.size(); ++i) {
     if (!(meets[i] >= 0.0F)) continue;
     // In units of way2 from the middle of the chord, whose half squared is half2. A line that surely begins
     // or ends inside, or does not reach the middle, does not cross.
-    const Eigen::Vector3f w(px - pack.centre[0][i], py - pack.centre[1][i], pz - pack.centre[2][i]);
-    const float unit = kRounding * (pack.shape[0][i] + pack.shape[3][i] + pack.shape[5][i]);
+    const float w = std::sqrt(wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
+    const float unit = kRounding * (xx[i] + yy[i] + zz[i]);
     const float inside = half2[i] - rounding[i] - unit;
     const auto crosses = [&](float place, float side) {
       const float at = side * (place * way2[i] + along[i]);
-      const float doubt = unit * (std::abs(place) + w.norm());
+      const float doubt = unit * (std::abs(place) + w);
       return at >= -doubt && (at + doubt) * (at + doubt) >= inside;
     };
     if (!crosses(start, -1.0F) || !crosses(end, 1.0F)) continue;
-    slots.push_back(static_cast<std::uint32_t>(kPack * p + i));
+    slots.push_back(static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i));
   }
 }
 
@@ -158,17 +157,14 @@ void EllipsoidTree::holding(const Eigen::Vector3d& point, std::vector<std::uint3
   while (!open.empty()) {
     const auto [level, number] = open.pop();
     const Boxes& boxes = levels_[level][number];
-    std::array<float, kParts> out;  // above 0: outside
-    for (std::size_t i = 0; i < kParts; ++i) {
-      const float x0 = boxes.min[0][i] - at.x(), x1 = at.x() - boxes.max[0][i];
-      const float y0 = boxes.min[1][i] - at.y(), y1 = at.y() - boxes.max[1][i];
-      const float z0 = boxes.min[2][i] - at.z(), z1 = at.z() - boxes.max[2][i];
-      const float x = x0 > x1 ? x0 : x1, y = y0 > y1 ? y0 : y1, z = z0 > z1 ? z0 : z1;
-      const float xy = x > y ? x : y;
-      out[i] = xy > z ? xy : z;
+    Lanes out = Lanes::Constant(-std::numeric_limits<float>::infinity());  // above 0: outside
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float place = at[static_cast<Eigen::Index>(axis)];
+      out =
+          out.max(ConstLanes(boxes.min[axis].data()) - place).max(place - ConstLanes(boxes.max[axis].data()));
     }
     for (std::size_t i = 0; i < kParts; ++i) {
-      if (out[i] > 0.0F) continue;
+      if (out[static_cast<Eigen::Index>(i)] > 0.0F) continue;
       if (level > 0)
         open.push(level - 1, kParts * number + i);
       else
@@ -181,18 +177,17 @@ void EllipsoidTree::hold_pack(std::size_t p, const Eigen::Vector3d& point,
                               std::vector<std::uint32_t>& slots) const {
   const Pack& pack = packs_[p];
   const Eigen::Vector3f from = (point - pack.anchor).cast<float>();
-  std::array<float, kPack> value, doubt;
-  for (std::size_t i = 0; i < kPack; ++i) {
-    const float wx = from.x() - pack.centre[0][i], wy = from.y() - pack.centre[1][i],
-                wz = from.z() - pack.centre[2][i];
-    const float xx = pack.shape[0][i], yy = pack.shape[3][i], zz = pack.shape[5][i];
-    value[i] = wx * wx * xx + wy * wy * yy + wz * wz * zz +
-               2.0F * (wx * wy * pack.shape[1][i] + wx * wz * pack.shape[2][i] + wy * wz * pack.shape[4][i]);
-    doubt[i] = kRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
-  }
-  for (std::size_t i = 0; i < kPack; ++i) {
+  const ConstLanes xx(pack.shape[0].data()), xy(pack.shape[1].data()), xz(pack.shape[2].data()),
+      yy(pack.shape[3].data()), yz(pack.shape[4].data()), zz(pack.shape[5].data());
+  const Lanes wx = from.x() - ConstLanes(pack.centre[0].data()),
+              wy = from.y() - ConstLanes(pack.centre[1].data()),
+              wz = from.z() - ConstLanes(pack.centre[2].data());
+  const Lanes value = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
+                      wz * (xz * wx + yz * wy + zz * wz);
+  const Lanes doubt = kRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
     if (value[i] > 1.0F + doubt[i]) continue;
-    const auto slot = static_cast<std::uint32_t>(kPack * p + i);
+    const auto slot = static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i);
     if (value[i] < 1.0F - doubt[i] || is_inside(at_slot(slot), point)) slots.push_back(slot);
   }
 }

@@ -1,3 +1,4 @@
+#include "coherent_order.h"
 #include "ray_path.h"
 
 #include <raycloud/exec/parallel.h>
@@ -41,8 +42,7 @@ std::uint16_t look_of(double time, const Eigen::Vector3d& way, double look_time)
 template <class Hit>
 void each_hit(const EllipsoidTree& tree, const RayCloud& rays, const Hit& hit) {
   std::vector<std::uint32_t> slots;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.bounded[i] == 0) continue;
+  for (const std::uint32_t i : coherent_order(rays, true)) {
     tree.holding(rays.ends[i], slots);
     for (const std::uint32_t slot : slots)
       hit(slot, i);
@@ -113,7 +113,7 @@ void HitTimes::find_episodes(const Context& context, double look_ticks, std::spa
 void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
                 const TimeScale& scale, std::span<Evidence> evidence) {
   std::vector<std::uint32_t> slots;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+  for (const std::uint32_t i : coherent_order(rays, false)) {
     tree.near_line(rays.starts[i], rays.ends[i], slots);
     if (slots.empty()) continue;
     const RayPath path(rays, i);

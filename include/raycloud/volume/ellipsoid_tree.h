@@ -48,7 +48,7 @@ class EllipsoidTree {
 
  private:
   static constexpr std::size_t kPack = 8;
-  static constexpr std::size_t kParts = 4;
+  static constexpr std::size_t kParts = 8;
 
   /// Centres are relative to the anchor; shapes are xx, xy, xz, yy, yz, zz.
   struct Pack {
