@@ -19,6 +19,13 @@ constexpr float kMargin = 1.01F;
 using Lanes = Eigen::Array<float, 8, 1>;
 using ConstLanes = Eigen::Map<const Lanes>;
 
+template <class Data>
+void fetch(const Data& data) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof(Data); at += kLine)
+    __builtin_prefetch(reinterpret_cast<const std::byte*>(&data) + at);
+}
+
 /// Parts of boxes still to be looked at. Four times as many levels as a tree of 2^32 has.
 class OpenParts {
  public:
@@ -83,6 +90,14 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
   }
   const auto reach = static_cast<float>((last - first) * length * (1.0 + 1e-6) + slack_);
 
+  // Packs are met a little later, when they have come from memory.
+  std::array<std::uint32_t, 32> met;
+  std::size_t waiting = 0;
+  const auto meet_all = [&] {
+    for (std::size_t i = 0; i < waiting; ++i)
+      meet_pack(met[i], line, slots);
+    waiting = 0;
+  };
   OpenParts open;
   open.push(levels_.size() - 1, 0);
   while (!open.empty()) {
@@ -99,12 +114,18 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
     const Lanes within = leaves - enters;
     for (std::size_t i = 0; i < kParts; ++i) {
       if (!(within[static_cast<Eigen::Index>(i)] >= 0.0F)) continue;
-      if (level > 0)
-        open.push(level - 1, kParts * number + i);
-      else
-        meet_pack(kParts * number + i, line, slots);
+      const std::size_t part = kParts * number + i;
+      if (level > 0) {
+        open.push(level - 1, part);
+        fetch(levels_[level - 1][part]);
+      } else {
+        if (waiting == met.size()) meet_all();
+        met[waiting++] = static_cast<std::uint32_t>(part);
+        fetch(packs_[part]);
+      }
     }
   }
+  meet_all();
 }
 
 void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::uint32_t>& slots) const {
