@@ -31,7 +31,7 @@ ray::EllipsoidTree ellipsoids_of(const ray::Context& context, const ray::RayClou
     ray::NeighbourSearch search(near);
     for (std::size_t place = begin; place < end; ++place) {
       const std::uint32_t i = near.index(place);
-      tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {}), points[i].end,
+      tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = false}), points[i].end,
                                     ray::unpack_direction(points[i].to_sensor), 0.015));
     }
   });
@@ -66,11 +66,12 @@ int main(int argc, char** argv) {
   const Instant begun;
   const ray::EllipsoidTree tree = ellipsoids_of(context, rays);
   const Instant made;
-  std::vector<std::uint32_t> hits(tree.size());
-  each_piece(context, rays, [&](const ray::RayCloud& piece) { add_hits(tree, piece, hits); });
-  const Instant counted;
   std::vector<ray::Evidence> evidence(tree.size());
   const ray::TimeScale scale(rays.times.front(), rays.times.back());
+  ray::HitTimes times(tree.size());
+  each_piece(context, rays, [&](const ray::RayCloud& piece) { times.add(tree, piece, scale); });
+  times.find_episodes(context, scale.ticks(0.5), evidence);
+  const Instant counted;
   each_piece(context, rays,
              [&](const ray::RayCloud& piece) { add_passes(tree, piece, {}, scale, evidence); });
   const Instant walked;

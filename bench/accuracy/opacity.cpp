@@ -54,10 +54,11 @@ void opacity_row(double density, double blade, std::uint64_t count) {
   const ray::Scene scene = hedge_scene(density, blade);
   const ray::RayCloud rays = read_all({}, *simulate(scene, {.rays = count, .noise = kRangeNoise}));
   const ray::EllipsoidTree tree = ellipsoids_of(rays);
-  std::vector<std::uint32_t> hits(tree.size());
   std::vector<ray::Evidence> evidence(tree.size());
-  add_hits(tree, rays, hits);
   const ray::TimeScale scale(scene.path.times.front(), scene.path.times.back());
+  ray::HitTimes times(tree.size());
+  times.add(tree, rays, scale);
+  times.find_episodes({}, 0.0, evidence);
   add_passes(tree, rays, {}, scale, evidence);
   constexpr double kRim = 0.25;  // m, all of the ellipsoid is in the hedge
   std::vector<std::uint32_t> seen;
@@ -65,11 +66,11 @@ void opacity_row(double density, double blade, std::uint64_t count) {
     const Eigen::Vector3d centre = tree.at_slot(slot).centre;
     const bool inside =
         ((centre - kHedgeLow).array() > kRim).all() && ((kHedgeHigh - centre).array() > kRim).all();
-    if (inside && hits[slot] + evidence[slot].crossings >= kFewestRays) seen.push_back(slot);
+    if (inside && evidence[slot].hits + evidence[slot].crossings >= kFewestRays) seen.push_back(slot);
   }
   double found = 0.0, expected = 0.0, used = 0.0;
   for (std::size_t i = 0; i < seen.size(); i += seen.size() / kSample + 1, used += 1.0) {
-    const double others = hits[seen[i]] - 1.0;
+    const double others = evidence[seen[i]].hits - 1.0;
     found += others / (others + evidence[seen[i]].crossings);
     expected += expected_opacity(tree.at_slot(seen[i]), rays, density);
   }

@@ -92,7 +92,8 @@ CloudEllipsoids cloud_ellipsoids(const Context& context, RaySource& source) {
                                                [&](std::size_t i) { return ends.points[i].end; });
   const PointTree tree(context, ends.points);
   ends.points = std::vector<SeenPoint>();
-  const SurfelRule rule{.neighbours = kEllipsoidNeighbours, .reach = ends.reach};
+  // Both sides of a thin wall together: what is between them is as solid, and it takes a third of the time.
+  const SurfelRule rule{.neighbours = kEllipsoidNeighbours, .reach = ends.reach, .by_side = false};
   cloud.range_noise = range_noise_of(context, tree, rule);
   parallel_for(context, tree.size(), 4096, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(tree);

@@ -38,17 +38,6 @@ std::uint16_t look_of(double time, const Eigen::Vector3d& way, double look_time)
   return static_cast<std::uint16_t>(1U << (hash >> 60));
 }
 
-/// Calls `hit(slot, i)` for each ellipsoid that the end of bounded ray `i` is in.
-template <class Hit>
-void each_hit(const EllipsoidTree& tree, const RayCloud& rays, const Hit& hit) {
-  std::vector<std::uint32_t> slots;
-  for (const std::uint32_t i : coherent_order(rays, true)) {
-    tree.holding(rays.ends[i], slots);
-    for (const std::uint32_t slot : slots)
-      hit(slot, i);
-  }
-}
-
 /// Parts hits in order of time at their longest pauses.
 void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evidence& evidence) {
   constexpr std::size_t kPauses = Evidence::kEpisodes - 1;
@@ -78,33 +67,40 @@ void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evide
 
 }  // namespace
 
-void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<std::uint32_t> hits) {
-  each_hit(tree, rays, [&](std::uint32_t slot, std::size_t) {
-    std::atomic_ref<std::uint32_t>(hits[slot]).fetch_add(1, std::memory_order_relaxed);
-  });
-}
-
-HitTimes::HitTimes(std::span<const std::uint32_t> hits) : begin_(hits.size() + 1), count_(hits.size()) {
-  for (std::size_t slot = 0; slot < hits.size(); ++slot)
-    begin_[slot + 1] = begin_[slot] + hits[slot];
-  ticks_.resize(begin_.back());
-}
-
 void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale) {
-  each_hit(tree, rays, [&](std::uint32_t slot, std::size_t i) {
-    const std::uint32_t at =
-        std::atomic_ref<std::uint32_t>(count_[slot]).fetch_add(1, std::memory_order_relaxed);
-    ticks_[begin_[slot] + at] = scale.tick(rays.times[i]);
-  });
+  std::vector<Further> further;
+  std::vector<std::uint32_t> slots;
+  for (const std::uint32_t i : coherent_order(rays, true)) {
+    tree.holding(rays.ends[i], slots);
+    const std::uint16_t tick = scale.tick(rays.times[i]);
+    for (const std::uint32_t slot : slots) {
+      const std::uint32_t at =
+          std::atomic_ref<std::uint32_t>(counts_[slot]).fetch_add(1, std::memory_order_relaxed);
+      if (at < kFirst)
+        first_[slot][at] = tick;
+      else
+        further.push_back({slot, tick});
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  further_.insert(further_.end(), further.begin(), further.end());
 }
 
 void HitTimes::find_episodes(const Context& context, double look_ticks, std::span<Evidence> evidence) {
-  parallel_for(context, count_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_sort(context, further_.begin(), further_.end());
+  parallel_for(context, counts_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint16_t> ticks;
+    auto further =
+        std::lower_bound(further_.begin(), further_.end(), Further{static_cast<std::uint32_t>(begin), 0});
     for (std::size_t slot = begin; slot < end; ++slot) {
-      if (count_[slot] == 0) continue;
-      const std::span<std::uint16_t> ticks(ticks_.data() + begin_[slot], count_[slot]);
+      const std::uint32_t count = counts_[slot];
+      if (count == 0) continue;
+      const auto first = first_[slot].begin();
+      ticks.assign(first, first + std::min<std::ptrdiff_t>(count, kFirst));
+      for (; further != further_.end() && further->slot == slot; ++further)
+        ticks.push_back(further->tick);
       std::sort(ticks.begin(), ticks.end());
-      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count_[slot], kMostCounted));
+      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count, kMostCounted));
       set_episodes(ticks, look_ticks, evidence[slot]);
     }
   });

@@ -49,10 +49,7 @@ std::vector<Evidence> own_evidence(const Context& context, RaySource& source, co
                                    const TimeScale& scale, const CountRule& counting, bool one_episode) {
   std::vector<Evidence> evidence(tree.size());
   {
-    std::vector<std::uint32_t> hits(tree.size());
-    each_chunk(context, source, [&](const RayCloud& rays) { add_hits(tree, rays, hits); });
-    HitTimes times(hits);
-    hits = std::vector<std::uint32_t>();
+    HitTimes times(tree.size());
     each_chunk(context, source, [&](const RayCloud& rays) { times.add(tree, rays, scale); });
     constexpr double kLongest = 65536.0;  // ticks
     times.find_episodes(context, one_episode ? kLongest : scale.ticks(counting.look_time), evidence);

@@ -7,7 +7,9 @@
 #include <raycloud/volume/ellipsoid_tree.h>
 
 #include <array>
+#include <compare>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -72,24 +74,28 @@ struct CountRule {
   double look_time = 0.5;  ///< s
 };
 
-/// Adds the rays that end in ellipsoids to `hits`, by slot. Any number of threads may add rays at once: every
-/// step is atomic, and their order does not matter. About 0.4 µs a ray.
-void add_hits(const EllipsoidTree& tree, const RayCloud& rays, std::span<std::uint32_t> hits);
-
-/// The times of all hits, to find the episodes from.
+/// The times of all rays that end in ellipsoids, to find the episodes from. 36 bytes an ellipsoid, and 8 for
+/// each hit above 16.
 class HitTimes {
  public:
-  /// For so many hits of each slot.
-  explicit HitTimes(std::span<const std::uint32_t> hits);
-  /// Adds the same rays that were added to those. Threads as above.
+  explicit HitTimes(std::size_t ellipsoids) : counts_(ellipsoids), first_(ellipsoids) {}
+  /// Any number of threads may add rays at once: every step is atomic, and their order does not matter. About
+  /// 0.6 µs a ray.
   void add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale);
-  /// Called when all are there: sets `hits` and the episodes.
+  /// Called when all are there: sets `hits` and the episodes, by slot. Pauses are longer than `look_ticks`.
   void find_episodes(const Context& context, double look_ticks, std::span<Evidence> evidence);
 
  private:
-  std::vector<std::uint64_t> begin_;
-  std::vector<std::uint32_t> count_;
-  std::vector<std::uint16_t> ticks_;
+  static constexpr std::size_t kFirst = 16;
+  struct Further {
+    std::uint32_t slot;
+    std::uint16_t tick;
+    friend auto operator<=>(const Further&, const Further&) = default;
+  };
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::array<std::uint16_t, kFirst>> first_;
+  std::vector<Further> further_;
+  std::mutex mutex_;
 };
 
 /// Adds the rays that cross ellipsoids to `crossings` and, by their time, to the others. Called when all

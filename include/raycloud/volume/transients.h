@@ -42,7 +42,7 @@ struct TransientCounts {
 };
 
 /// Sends each ray to one of two sinks made with the columns of transient_columns(), in order and, but for
-/// those columns, with every bit. Reads `source` five times. The method is that of
+/// those columns, with every bit. Reads `source` four times. The method is that of
 /// docs/algorithms/transients.md; neighbourhood shape, in memory. O(n log n): about 4 µs of one core a ray;
 /// 115 bytes a bounded ray. The result does not depend on threads.
 ///

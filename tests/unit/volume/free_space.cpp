@@ -68,7 +68,6 @@ EllipsoidTree tree_of(const Context& context, const std::vector<Ellipsoid>& elli
 std::vector<Evidence> counted(const Context& context, const Scene& scene, const CountRule& rule) {
   const EllipsoidTree tree = tree_of(context, scene.ellipsoids);
   std::vector<Evidence> evidence(tree.size());
-  std::vector<std::uint32_t> hits(tree.size());
   constexpr std::size_t kChunk = 37;
   const auto each = [&](const auto& add) {
     parallel_for(context, scene.rays.size(), kChunk, [&](std::size_t begin, std::size_t end) {
@@ -80,8 +79,7 @@ std::vector<Evidence> counted(const Context& context, const Scene& scene, const 
       add(chunk);
     });
   };
-  each([&](const RayCloud& rays) { add_hits(tree, rays, hits); });
-  HitTimes times(hits);
+  HitTimes times(tree.size());
   each([&](const RayCloud& rays) { times.add(tree, rays, kScale); });
   times.find_episodes(context, kScale.ticks(rule.look_time), evidence);
   each([&](const RayCloud& rays) { add_passes(tree, rays, rule, kScale, evidence); });
