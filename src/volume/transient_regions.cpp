@@ -101,8 +101,8 @@ class Regions {
  private:
   static constexpr std::size_t kGrain = 4096;
   static constexpr std::size_t kMedian = 5, kLeastTenth = 1;  ///< tenths
-  static constexpr float kOpaque = 0.8F;
-  static constexpr float kTogether = 3.0F;
+  static constexpr float kOpaque = 0.95F;
+  static constexpr float kTogether = 2.5F;
 
   /// `work(i, around)` for each that `wanted(i)`, with the ellipsoids that its centre is in.
   template <class Wanted, class Work>

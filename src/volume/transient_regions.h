@@ -23,8 +23,9 @@ struct Contradiction {
 /// at once: it takes medians, minima and maxima, and multiples of them.
 ///
 /// 1. Its own transience, less what a hedge of even opacity would have by chance, but not above the median of
-///    the ellipsoids around its centre. Or, if it was opaque, three times that, but not above three times the
-///    least tenth of them: together they cover some three times its area, and so many more rays went through.
+///    the ellipsoids around its centre. Or, if it was opaque, two and a half times that, but not above as
+///    much of the least tenth of them: together they cover some four times its area, and so many more rays
+///    went through.
 /// 2. From where it is above 14 it spreads, three times, to ellipsoids that overlap, up to ten times their
 /// own
 ///    hint of transience, where that is above 0.7.
