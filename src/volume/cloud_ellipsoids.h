@@ -20,7 +20,7 @@ struct CloudEllipsoids {
   double last_time = -std::numeric_limits<double>::infinity();
 };
 
-/// Reads `source` once and rewinds it. 88 bytes a bounded ray. About 2.2 µs of one core a ray.
+/// Reads `source` once and rewinds it. 95 bytes a bounded ray. About 2.1 µs of one core a ray.
 [[nodiscard]] CloudEllipsoids cloud_ellipsoids(const Context& context, RaySource& source);
 
 }  // namespace ray

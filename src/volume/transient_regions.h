@@ -6,7 +6,6 @@
 #include <raycloud/exec/context.h>
 #include <raycloud/volume/ellipsoid_tree.h>
 
-#include <functional>
 #include <span>
 #include <vector>
 

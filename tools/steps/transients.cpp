@@ -43,7 +43,7 @@ scanner and some centimetres of error in the map do no harm.)",
                          "by itself",
                  .advanced = true}},
     .writes = "CLOUD_fixed.ply and CLOUD_transient.ply",
-    .memory = "115 bytes a ray, whatever --memory allows.",
+    .memory = "120 bytes a ray, whatever --memory allows.",
     .see_also = {"raydenoise", "raycombine", "raysplit"}};
 
 TransientRule rule_of(const Match& match) {
