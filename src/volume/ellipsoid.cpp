@@ -1,5 +1,6 @@
 #include <raycloud/volume/ellipsoid.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
