@@ -15,10 +15,9 @@ struct Bar {
   double per_ray;  ///< bytes
 };
 
-void command(const bench::Paths& paths, const std::string& words, const Bar& bar) {
-  const std::string name = words.substr(0, words.find(' '));
-  const std::string rest = words.substr(words.find(' '));
-  const std::string call = name + " -q " + paths.big + rest + " -o " + paths.file("out.ply");
+/// Prints its row.
+bench::Subject whole_cloud(const bench::Paths& paths, const std::string& words, const std::string& call,
+                           const Bar& bar) {
   const bench::Subject whole{paths.command(call), ""};
   const bench::Result alone = bench::time_alone(whole, 3);
   char promise[64];
@@ -27,6 +26,14 @@ void command(const bench::Paths& paths, const std::string& words, const Bar& bar
   const double per_ray = alone.peak_megabytes * 1e6 / paths.rays;
   bench::row((words + " (" + std::to_string(static_cast<int>(per_ray)) + " B/ray)").c_str(), alone,
              paths.rays, "", promise, rate >= bar.rate && per_ray <= bar.per_ray);
+  return whole;
+}
+
+void command(const bench::Paths& paths, const std::string& words, const Bar& bar) {
+  const std::string name = words.substr(0, words.find(' '));
+  const std::string rest = words.substr(words.find(' '));
+  const std::string call = name + " -q " + paths.big + rest + " -o " + paths.file("out.ply");
+  const bench::Subject whole = whole_cloud(paths, words, call, bar);
   // About twenty blocks.
   const auto memory = static_cast<long>(bar.per_ray * paths.rays / 10e6);
   const bench::Subject blocks{paths.command(call + " --memory " + std::to_string(memory) + "MB"), ""};
@@ -49,6 +56,8 @@ int main(int argc, char** argv) {
   command(paths, "raysmooth ", {1.0, 90.0});
   command(paths, "raycolour normal", {1.0, 90.0});
   command(paths, "raycolour shape", {1.0, 90.0});
-  bench::run("rm -f " + paths.file("out.ply"));
+  whole_cloud(paths, "raytransients min 10 rays",
+              "raytransients -q min " + paths.big + " 10 rays -o " + paths.file("out.ply"), {0.6, 140.0});
+  bench::run("rm -f " + paths.file("out.ply") + " " + paths.file("out_transient.ply"));
   return 0;
 }

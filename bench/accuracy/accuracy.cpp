@@ -1,5 +1,5 @@
 // How true normals, smoothing and denoising are, on scenes whose truth is known.
-//   bench_accuracy [normals|smoothing|denoising]
+//   bench_accuracy [normals|smoothing|denoising|transients]
 // Prints Markdown tables; the same numbers on every run, whatever the threads.
 
 #include "tables.h"
@@ -9,8 +9,9 @@
 
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
-  if (argc > 2 || (argc == 2 && only != "normals" && only != "smoothing" && only != "denoising")) {
-    std::fprintf(stderr, "usage: bench_accuracy [normals|smoothing|denoising]\n");
+  if (argc > 2 || (argc == 2 && only != "normals" && only != "smoothing" && only != "denoising" &&
+                   only != "transients")) {
+    std::fprintf(stderr, "usage: bench_accuracy [normals|smoothing|denoising|transients]\n");
     return 2;
   }
   if (only.empty() || only == "normals") bench::print_normals();
@@ -19,6 +20,10 @@ int main(int argc, char** argv) {
     bench::print_denoising();
     bench::print_calibration();
     bench::print_far_from_others();
+  }
+  if (only.empty() || only == "transients") {
+    bench::print_opacity();
+    bench::print_transients();
   }
   return 0;
 }

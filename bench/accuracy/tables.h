@@ -11,6 +11,8 @@ void print_smoothing();
 void print_denoising();
 void print_calibration();
 void print_far_from_others();
+void print_transients();
+void print_opacity();
 
 /// The last cells of a row.
 [[nodiscard]] inline std::string verdict(const std::string& bar, bool met) {

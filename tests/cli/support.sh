@@ -114,6 +114,8 @@ raydecimate $1 10 cm/ray
 raydecimate $1 3 cm/m
 raydenoise $1 10 cm
 raydenoise $1 range 10 cm
+raytransients min $1 10 rays
+raytransients newest $1 10 rays --paper
 rayrestore $1 10 cm $1
 raysplit $1 plane 0,0,1
 raysplit $1 time 3 %

@@ -22,6 +22,7 @@ inline constexpr std::array kCommands{
     ListedCommand{"raydecimate", "thin a ray cloud"},
     ListedCommand{"rayrestore", "apply the edits of a thinned ray cloud to the full one"},
     ListedCommand{"raydenoise", "take noise out of a ray cloud"},
+    ListedCommand{"raytransients", "take out what came, went or moved while the cloud was scanned"},
     ListedCommand{"raycolour", "colour a ray cloud"},
     ListedCommand{"raypipe", "run several commands as one, without files between them"},
     ListedCommand{"raysmooth", "move end points onto the surface they are samples of"},

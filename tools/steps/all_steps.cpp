@@ -5,8 +5,8 @@
 namespace ray::tools {
 
 std::span<const Step* const> all_steps() {
-  static const std::array kSteps{&kDecimateStep,  &kDenoiseStep, &kSmoothStep, &kSplitStep,
-                                 &kTranslateStep, &kRotateStep,  &kColourStep};
+  static const std::array kSteps{&kDecimateStep, &kDenoiseStep,   &kTransientsStep, &kSmoothStep,
+                                 &kSplitStep,    &kTranslateStep, &kRotateStep,     &kColourStep};
   return kSteps;
 }
 

@@ -13,6 +13,7 @@ extern const Step kDenoiseStep;
 extern const Step kRotateStep;
 extern const Step kSmoothStep;
 extern const Step kSplitStep;
+extern const Step kTransientsStep;
 extern const Step kTranslateStep;
 
 /// All of them, for `raycloud pipe` (in steps/all_steps.cpp).

@@ -4,6 +4,7 @@
 
 #include <raycloud/exec/stream.h>
 
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,8 +25,8 @@ struct StreamPart {
 /// For each chunk: `map(rays, parts)` on any thread, which may change the chunk and returns a value; then, in
 /// file order and one at a time, `fold(value, parts)`; then the sink of every part encodes on any thread and
 /// writes in order, the parts of a chunk one after the other. `parts` holds what an earlier chunk left there:
-/// both functions must set what they use. Does not finish the sinks. Memory: pipeline_slots(context) chunks
-/// with their parts.
+/// both functions must set what they use. A fold may take the chunk, too: `fold(rays, value, parts)`. Does
+/// not finish the sinks. Memory: pipeline_slots(context) chunks with their parts.
 template <class Map, class Fold>
 StreamCounts stream_parts(const Context& context, RaySource& source, const Map& map, const Fold& fold) {
   using Value = decltype(map(std::declval<RayCloud&>(), std::declval<std::vector<StreamPart>&>()));
@@ -51,7 +52,10 @@ StreamCounts stream_parts(const Context& context, RaySource& source, const Map& 
                       Item& item = items[slot];
                       counts.rays_in += item.rays_in;
                       counts.dropped += item.dropped;
-                      fold(item.value, item.parts);
+                      if constexpr (std::is_invocable_v<Fold, RayCloud&, Value&, std::vector<StreamPart>&>)
+                        fold(item.rays, item.value, item.parts);
+                      else
+                        fold(item.value, item.parts);
                       for (const StreamPart& part : item.parts)
                         counts.rays_out += part.size();
                       if (context.progress != nullptr) context.progress->advance(item.raw.rows);

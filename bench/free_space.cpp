@@ -1,0 +1,91 @@
+// The walk of rays through the ellipsoids of their cloud, by itself.
+//   bench_free_space CLOUD.ply [THREADS]
+// Prints one line: what making the ellipsoids takes, counting ends in them, and walking all rays.
+
+#include <raycloud/exec/parallel.h>
+#include <raycloud/exec/stream.h>
+#include <raycloud/io/ray_cloud_file.h>
+#include <raycloud/spatial/surfel.h>
+#include <raycloud/volume/free_space.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+
+namespace {
+
+struct Instant {
+  double wall = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  double processor = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+};
+
+ray::EllipsoidTree ellipsoids_of(const ray::Context& context, const ray::RayCloud& rays) {
+  std::vector<ray::SeenPoint> points;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0)
+      points.push_back({rays.ends[i], ray::pack_direction(rays.starts[i] - rays.ends[i])});
+  ray::EllipsoidTree tree(context, points.size(), [&](std::size_t i) { return points[i].end; });
+  const ray::PointTree near(context, points);
+  ray::parallel_for(context, near.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    ray::NeighbourSearch search(near);
+    for (std::size_t place = begin; place < end; ++place) {
+      const std::uint32_t i = near.index(place);
+      tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = false}), points[i].end,
+                                    ray::unpack_direction(points[i].to_sensor), 0.015));
+    }
+  });
+  tree.close(context);
+  return tree;
+}
+
+/// `work(chunk)` for all rays, in pieces.
+template <class Work>
+void each_piece(const ray::Context& context, const ray::RayCloud& rays, const Work& work) {
+  constexpr std::size_t kRays = 1 << 15;
+  ray::parallel_for(context, rays.size(), kRays, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = begin; i < end; ++i)
+      rows.push_back(static_cast<std::uint32_t>(i));
+    ray::RayCloud piece;
+    piece.assign_rows(rays, rows);
+    work(piece);
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: bench_free_space CLOUD.ply [THREADS]\n");
+    return 2;
+  }
+  const ray::Context context{.threads = argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 0};
+  const auto source = ray::open_ray_cloud(argv[1]);
+  const ray::RayCloud rays = read_all(context, *source);
+  const Instant begun;
+  const ray::EllipsoidTree tree = ellipsoids_of(context, rays);
+  const Instant made;
+  std::vector<ray::Evidence> evidence(tree.size());
+  const ray::TimeScale scale(rays.times.front(), rays.times.back());
+  ray::HitTimes times(tree.size());
+  each_piece(context, rays, [&](const ray::RayCloud& piece) { times.add(tree, piece, scale); });
+  times.find_episodes(context, scale.ticks(0.5), evidence);
+  const Instant counted;
+  each_piece(context, rays,
+             [&](const ray::RayCloud& piece) { add_passes(tree, piece, {}, scale, evidence); });
+  const Instant walked;
+  const auto count = static_cast<double>(rays.size());
+  const auto spent = [&](const Instant& from, const Instant& to) {
+    std::printf(" %.2f s (%.2f µs of one core a ray),", to.wall - from.wall,
+                1e6 * (to.processor - from.processor) / count);
+  };
+  std::printf("\nFree space, %.2f M rays: ellipsoids", count / 1e6);
+  spent(begun, made);
+  std::printf(" ends");
+  spent(made, counted);
+  std::printf(" walk");
+  spent(counted, walked);
+  std::printf(" %.2f M rays/s (bar 2)\n", count / (walked.wall - counted.wall) / 1e6);
+  return 0;
+}

@@ -1,0 +1,216 @@
+/// The searches of EllipsoidTree: which ellipsoids a line or a point may meet.
+
+#include <raycloud/volume/ellipsoid_tree.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ray {
+namespace {
+
+/// A form in single precision is wrong by so much of the largest product in it, which is at most the trace of
+/// the shape times the squared lengths.
+constexpr float kRounding = 1e-6F;
+constexpr float kMargin = 1.01F;
+
+/// Numbers of eight at once; plain loops over so few are not made parallel by compilers.
+using Lanes = Eigen::Array<float, 8, 1>;
+using ConstLanes = Eigen::Map<const Lanes>;
+
+template <class Data>
+void fetch(const Data& data) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof(Data); at += kLine)
+    __builtin_prefetch(reinterpret_cast<const std::byte*>(&data) + at);
+}
+
+/// Parts of boxes still to be looked at: seven beside the way at each of at most eleven levels, and eight.
+class OpenParts {
+ public:
+  struct Part {
+    std::uint32_t level;
+    std::uint32_t number;
+  };
+  void push(std::size_t level, std::size_t number) {
+    parts_[count_++] = {static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(number)};
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  Part pop() { return parts_[--count_]; }
+
+ private:
+  std::array<Part, 96> parts_;
+  std::size_t count_ = 0;
+};
+
+/// The part of a line within a box, as fractions; empty where second < first.
+std::pair<double, double> clipped(const Eigen::Vector3d& start, const Eigen::Vector3d& way,
+                                  const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  double first = 0.0, last = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way[axis] == 0.0) {
+      if (start[axis] < min[axis] || start[axis] > max[axis]) return {1.0, 0.0};
+      continue;
+    }
+    const double a = (min[axis] - start[axis]) / way[axis];
+    const double b = (max[axis] - start[axis]) / way[axis];
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  }
+  return {first, last};
+}
+
+}  // namespace
+
+struct EllipsoidTree::Line {
+  Eigen::Vector3d start;
+  Eigen::Vector3d direction;  // unit
+  double length;
+  std::array<float, 3> d;
+};
+
+void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                              std::vector<std::uint32_t>& slots) const {
+  slots.clear();
+  if (levels_.empty()) return;
+  const Eigen::Vector3d way = end - start;
+  const auto [first, last] = clipped(start, way, min_, max_);
+  const double length = way.norm();
+  if (!(first <= last) || !(length > 0.0)) return;
+  Line line{start, way / length, length, {}};
+  std::array<float, 3> from, inverse;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    constexpr double kLeast = 1e-12;
+    const double d = line.direction[a];
+    line.d[axis] = static_cast<float>(d);
+    from[axis] = static_cast<float>(start[a] + first * way[a] - origin_[a]);
+    inverse[axis] = static_cast<float>(1.0 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d));
+  }
+  const auto reach = static_cast<float>((last - first) * length * (1.0 + 1e-6) + slack_);
+
+  // Packs are met a little later, when they have come from memory.
+  std::array<std::uint32_t, 32> met;
+  std::size_t waiting = 0;
+  const auto meet_all = [&] {
+    for (std::size_t i = 0; i < waiting; ++i)
+      meet_pack(met[i], line, slots);
+    waiting = 0;
+  };
+  OpenParts open;
+  open.push(levels_.size() - 1, 0);
+  while (!open.empty()) {
+    const auto [level, number] = open.pop();
+    const Boxes& boxes = levels_[level][number];
+    Lanes enters = Lanes::Zero(), leaves = Lanes::Constant(reach);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool up = inverse[axis] > 0.0F;
+      const ConstLanes near(up ? boxes.min[axis].data() : boxes.max[axis].data());
+      const ConstLanes far(up ? boxes.max[axis].data() : boxes.min[axis].data());
+      enters = enters.max((near - from[axis]) * inverse[axis]);
+      leaves = leaves.min((far - from[axis]) * inverse[axis]);
+    }
+    const Lanes within = leaves - enters;
+    for (std::size_t i = 0; i < kParts; ++i) {
+      if (!(within[static_cast<Eigen::Index>(i)] >= 0.0F)) continue;
+      const std::size_t part = kParts * number + i;
+      if (level > 0) {
+        open.push(level - 1, part);
+        fetch(levels_[level - 1][part]);
+      } else {
+        if (waiting == met.size()) meet_all();
+        met[waiting++] = static_cast<std::uint32_t>(part);
+        fetch(packs_[part]);
+      }
+    }
+  }
+  meet_all();
+}
+
+void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::uint32_t>& slots) const {
+  const Pack& pack = packs_[p];
+  // From the point of the line nearest to the anchor, so that single precision will do.
+  const Eigen::Vector3d to_anchor = pack.anchor - line.start;
+  const double middle = line.direction.dot(to_anchor);
+  const Eigen::Vector3d nearest = middle * line.direction - to_anchor;
+  const auto px = static_cast<float>(nearest.x()), py = static_cast<float>(nearest.y()),
+             pz = static_cast<float>(nearest.z());
+  const auto start = static_cast<float>(-middle), end = static_cast<float>(line.length - middle);
+  const auto [dx, dy, dz] = line.d;
+  const ConstLanes xx(pack.shape[0].data()), xy(pack.shape[1].data()), xz(pack.shape[2].data()),
+      yy(pack.shape[3].data()), yz(pack.shape[4].data()), zz(pack.shape[5].data());
+  const Lanes wx = px - ConstLanes(pack.centre[0].data()), wy = py - ConstLanes(pack.centre[1].data()),
+              wz = pz - ConstLanes(pack.centre[2].data());
+  const Lanes sx = xx * dx + xy * dy + xz * dz, sy = xy * dx + yy * dy + yz * dz,
+              sz = xz * dx + yz * dy + zz * dz;
+  const Lanes from2 = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
+                      wz * (xz * wx + yz * wy + zz * wz);
+  const Lanes way2 = dx * sx + dy * sy + dz * sz;
+  const Lanes along = wx * sx + wy * sy + wz * sz;
+  const Lanes rounding = 2.0F * kRounding * (xx + yy + zz) * ((wx * wx + wy * wy + wz * wz) * way2 + from2);
+  const Lanes half2 = way2 - from2 * way2 + along * along;
+  const Lanes meets = half2 + rounding + (kMargin - 1.0F) * way2;
+  for (Eigen::Index i = 0; i < meets.size(); ++i) {
+    if (!(meets[i] >= 0.0F)) continue;
+    // In units of way2 from the middle of the chord, whose half squared is half2. A line that surely begins
+    // or ends inside, or does not reach the middle, does not cross.
+    const float w = std::sqrt(wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
+    const float unit = kRounding * (xx[i] + yy[i] + zz[i]);
+    const float inside = half2[i] - rounding[i] - unit;
+    const auto crosses = [&](float place, float side) {
+      const float at = side * (place * way2[i] + along[i]);
+      const float doubt = unit * (std::abs(place) + w);
+      return at >= -doubt && (at + doubt) * (at + doubt) >= inside;
+    };
+    if (!crosses(start, -1.0F) || !crosses(end, 1.0F)) continue;
+    slots.push_back(static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i));
+  }
+}
+
+void EllipsoidTree::holding(const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const {
+  slots.clear();
+  if (levels_.empty()) return;
+  if ((point.array() < min_.array()).any() || (point.array() > max_.array()).any()) return;
+  const Eigen::Vector3f at = (point - origin_).cast<float>();
+  OpenParts open;
+  open.push(levels_.size() - 1, 0);
+  while (!open.empty()) {
+    const auto [level, number] = open.pop();
+    const Boxes& boxes = levels_[level][number];
+    Lanes out = Lanes::Constant(-std::numeric_limits<float>::infinity());  // above 0: outside
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float place = at[static_cast<Eigen::Index>(axis)];
+      out =
+          out.max(ConstLanes(boxes.min[axis].data()) - place).max(place - ConstLanes(boxes.max[axis].data()));
+    }
+    for (std::size_t i = 0; i < kParts; ++i) {
+      if (out[static_cast<Eigen::Index>(i)] > 0.0F) continue;
+      if (level > 0)
+        open.push(level - 1, kParts * number + i);
+      else
+        hold_pack(kParts * number + i, point, slots);
+    }
+  }
+}
+
+void EllipsoidTree::hold_pack(std::size_t p, const Eigen::Vector3d& point,
+                              std::vector<std::uint32_t>& slots) const {
+  const Pack& pack = packs_[p];
+  const Eigen::Vector3f from = (point - pack.anchor).cast<float>();
+  const ConstLanes xx(pack.shape[0].data()), xy(pack.shape[1].data()), xz(pack.shape[2].data()),
+      yy(pack.shape[3].data()), yz(pack.shape[4].data()), zz(pack.shape[5].data());
+  const Lanes wx = from.x() - ConstLanes(pack.centre[0].data()),
+              wy = from.y() - ConstLanes(pack.centre[1].data()),
+              wz = from.z() - ConstLanes(pack.centre[2].data());
+  const Lanes value = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
+                      wz * (xz * wx + yz * wy + zz * wz);
+  const Lanes doubt = kRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if (value[i] > 1.0F + doubt[i]) continue;
+    const auto slot = static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i);
+    if (value[i] < 1.0F - doubt[i] || is_inside(at_slot(slot), point)) slots.push_back(slot);
+  }
+}
+
+}  // namespace ray

@@ -1,0 +1,135 @@
+#include "coherent_order.h"
+#include "ray_path.h"
+
+#include <raycloud/exec/parallel.h>
+#include <raycloud/volume/free_space.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace ray {
+namespace {
+
+constexpr std::uint16_t kMostCounted = 60000;
+
+void count(std::uint16_t& counter) {
+  const std::atomic_ref<std::uint16_t> atomic(counter);
+  std::uint16_t known = atomic.load(std::memory_order_relaxed);
+  while (known < kMostCounted && !atomic.compare_exchange_weak(known, static_cast<std::uint16_t>(known + 1),
+                                                               std::memory_order_relaxed)) {
+  }
+}
+
+void add_look(std::uint16_t& looks, std::uint16_t look) {
+  const std::atomic_ref<std::uint16_t> atomic(looks);
+  if ((atomic.load(std::memory_order_relaxed) & look) == 0) atomic.fetch_or(look, std::memory_order_relaxed);
+}
+
+/// The bit of a look: a piece of time, and one of 26 directions.
+std::uint16_t look_of(double time, const Eigen::Vector3d& way, double look_time) {
+  const double most = way.cwiseAbs().maxCoeff();
+  const Eigen::Vector3d side = most > 0.0 ? Eigen::Vector3d(way / most) : way;
+  const auto third = [](double v) { return std::uint64_t{v > 0.5 ? 2U : v < -0.5 ? 0U : 1U}; };
+  const auto when = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(time / look_time)));
+  std::uint64_t hash = when * 27 + third(side.x()) + 3 * third(side.y()) + 9 * third(side.z());
+  hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9ULL;
+  hash = (hash ^ hash >> 27) * 0x94d049bb133111ebULL;
+  return static_cast<std::uint16_t>(1U << (hash >> 60));
+}
+
+/// Parts hits in order of time at their longest pauses.
+void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evidence& evidence) {
+  constexpr std::size_t kPauses = Evidence::kEpisodes - 1;
+  std::array<std::size_t, kPauses> after{};  // the hits after which there is a pause, the longest pause first
+  std::size_t pauses = 0;
+  const auto length = [&](std::size_t i) { return ticks[i + 1] - ticks[i]; };
+  for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
+    if (length(i) <= look_ticks) continue;
+    std::size_t at = pauses;
+    while (at > 0 && length(after[at - 1]) < length(i))
+      --at;
+    if (at == kPauses) continue;
+    pauses = std::min(pauses + 1, kPauses);
+    for (std::size_t k = pauses - 1; k > at; --k)
+      after[k] = after[k - 1];
+    after[at] = i;
+  }
+  std::sort(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(pauses));
+  evidence.begins.fill(ticks.back());
+  evidence.ends.fill(ticks.back());
+  evidence.begins[0] = ticks.front();
+  for (std::size_t k = 0; k < pauses; ++k) {
+    evidence.ends[k] = ticks[after[k]];
+    evidence.begins[k + 1] = ticks[after[k] + 1];
+  }
+}
+
+}  // namespace
+
+void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale) {
+  std::vector<Further> further;
+  std::vector<std::uint32_t> slots;
+  for (const std::uint32_t i : coherent_order(rays, true)) {
+    tree.holding(rays.ends[i], slots);
+    const std::uint16_t tick = scale.tick(rays.times[i]);
+    for (const std::uint32_t slot : slots) {
+      const std::uint32_t at =
+          std::atomic_ref<std::uint32_t>(counts_[slot]).fetch_add(1, std::memory_order_relaxed);
+      if (at < kFirst)
+        first_[slot][at] = tick;
+      else
+        further.push_back({slot, tick});
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  further_.insert(further_.end(), further.begin(), further.end());
+}
+
+void HitTimes::find_episodes(const Context& context, double look_ticks, std::span<Evidence> evidence) {
+  parallel_sort(context, further_.begin(), further_.end());
+  parallel_for(context, counts_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint16_t> ticks;
+    auto further =
+        std::lower_bound(further_.begin(), further_.end(), Further{static_cast<std::uint32_t>(begin), 0});
+    for (std::size_t slot = begin; slot < end; ++slot) {
+      const std::uint32_t count = counts_[slot];
+      if (count == 0) continue;
+      const auto first = first_[slot].begin();
+      ticks.assign(first, first + std::min<std::ptrdiff_t>(count, kFirst));
+      for (; further != further_.end() && further->slot == slot; ++further)
+        ticks.push_back(further->tick);
+      std::sort(ticks.begin(), ticks.end());
+      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count, kMostCounted));
+      set_episodes(ticks, look_ticks, evidence[slot]);
+    }
+  });
+}
+
+void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
+                const TimeScale& scale, std::span<Evidence> evidence) {
+  std::vector<std::uint32_t> slots;
+  for (const std::uint32_t i : coherent_order(rays, false)) {
+    tree.near_line(rays.starts[i], rays.ends[i], slots);
+    if (slots.empty()) continue;
+    const RayPath path(rays, i);
+    const std::uint16_t look = look_of(rays.times[i], path.way(), rule.look_time);
+    const std::uint16_t tick = scale.tick(rays.times[i]);
+    for (const std::uint32_t slot : slots) {
+      const Crossing crossing = path.cross(tree.at_slot(slot), rule.guard);
+      if (crossing == Crossing::none) continue;
+      Evidence& seen = evidence[slot];
+      count(seen.crossings);
+      if (crossing != Crossing::proves_empty) continue;
+      const std::size_t run = seen.run_at(tick);
+      if (run == Evidence::kRuns) {
+        count(seen.within);
+        continue;
+      }
+      count(seen.passes[run]);
+      add_look(seen.looks[run], look);
+    }
+  }
+}
+
+}  // namespace ray

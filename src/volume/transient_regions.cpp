@@ -1,0 +1,150 @@
+#include "transient_regions.h"
+
+#include <raycloud/exec/parallel.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace ray {
+namespace {
+
+/// Of exchangeable hits and passes, one run is as long as 1 / opacity on average, and the longest of a dozen
+/// pauses three times that.
+constexpr Transience kByChance{1.0F, 3.0F, 1.0F};
+constexpr Transience kHintByChance{0.5F, 1.5F, 0.5F};
+
+float beyond(const Transience& transience, const Transience& chance, const Contradiction& which) {
+  return (which.before ? std::max(0.0F, transience.before - chance.before) : 0.0F) +
+         (which.between ? std::max(0.0F, transience.between - chance.between) : 0.0F) +
+         (which.after ? std::max(0.0F, transience.after - chance.after) : 0.0F);
+}
+
+void raise(float& value, float to) {
+  const std::atomic_ref<float> atomic(value);
+  float known = atomic.load(std::memory_order_relaxed);
+  while (known < to && !atomic.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
+  }
+}
+
+float quantile(std::vector<float>& values, std::size_t tenths) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(tenths * values.size() / 10);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+class Regions {
+ public:
+  Regions(const Context& context, const EllipsoidTree& tree, std::span<const Evidence> evidence,
+          const Contradiction& which)
+      : context_(context),
+        tree_(tree),
+        own_(evidence.size()),
+        hints_(evidence.size()),
+        opaque_(evidence.size()) {
+    parallel_for(context, evidence.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        own_[i] = beyond(transience_of(evidence[i]), kByChance, which);
+        hints_[i] = beyond(hint_of(evidence[i]), kHintByChance, which);
+        opaque_[i] = opacity_while_there(evidence[i]) >= kOpaque ? 1 : 0;
+      }
+    });
+  }
+
+  void begin() {
+    scores_.resize(own_.size());
+    each([&](std::size_t i) { return own_[i] > 0.0F; },
+         [&](std::size_t i, std::span<const std::uint32_t> around) {
+           const float alone = std::min(own_[i], quantile_of(own_, around, kMedian));
+           const float together = kTogether * std::min(own_[i], quantile_of(own_, around, kLeastTenth));
+           scores_[i] = opaque_[i] != 0 ? std::max(alone, together) : alone;
+         });
+  }
+
+  /// To those whose centre is in the ellipsoid, and to those in which its centre is.
+  void spread() {
+    constexpr float kSource = 14.0F, kLeastHint = 0.7F, kMostOfHint = 10.0F;
+    std::vector<float>& reached = own_;  // which is needed no more
+    std::fill(reached.begin(), reached.end(), 0.0F);
+    each([&](std::size_t i) { return scores_[i] >= kSource || hints_[i] > kLeastHint; },
+         [&](std::size_t i, std::span<const std::uint32_t> around) {
+           float best = 0.0F;
+           for (const std::uint32_t other : around) {
+             best = std::max(best, scores_[other]);
+             if (scores_[i] >= kSource) raise(reached[other], scores_[i]);
+           }
+           if (best >= kSource) raise(reached[i], best);
+         });
+    for (std::size_t i = 0; i < scores_.size(); ++i)
+      if (hints_[i] > kLeastHint)
+        scores_[i] = std::max(scores_[i], std::min(kMostOfHint * hints_[i], reached[i]));
+  }
+
+  void fill_holes() {
+    std::vector<float>& reached = own_;
+    std::fill(reached.begin(), reached.end(), 0.0F);
+    each([&](std::size_t i) { return scores_[i] > 0.0F; },
+         [&](std::size_t i, std::span<const std::uint32_t> around) {
+           for (const std::uint32_t other : around)
+             raise(reached[other], scores_[i]);
+         });
+    std::vector<float>& filled = hints_;
+    filled = scores_;
+    each([&](std::size_t i) { return reached[i] > 0.0F || scores_[i] > 0.0F; },
+         [&](std::size_t i, std::span<const std::uint32_t> around) {
+           filled[i] = std::max(scores_[i], quantile_of(scores_, around, kMedian));
+         });
+    scores_ = std::move(filled);
+  }
+
+  [[nodiscard]] std::vector<float> take() { return std::move(scores_); }
+
+ private:
+  static constexpr std::size_t kGrain = 4096;
+  static constexpr std::size_t kMedian = 5, kLeastTenth = 1;  ///< tenths
+  static constexpr float kOpaque = 0.95F;
+  static constexpr float kTogether = 2.5F;
+
+  /// `work(i, around)` for each that `wanted(i)`, with the ellipsoids that its centre is in.
+  template <class Wanted, class Work>
+  void each(const Wanted& wanted, const Work& work) const {
+    parallel_for(context_, own_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> around;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!wanted(i)) continue;
+        tree_.holding(tree_.at_slot(static_cast<std::uint32_t>(i)).centre, around);
+        work(i, around);
+      }
+    });
+  }
+
+  static float quantile_of(const std::vector<float>& of, std::span<const std::uint32_t> around,
+                           std::size_t tenths) {
+    thread_local std::vector<float> values;
+    values.clear();
+    for (const std::uint32_t slot : around)
+      values.push_back(of[slot]);
+    return quantile(values, tenths);
+  }
+
+  const Context& context_;
+  const EllipsoidTree& tree_;
+  std::vector<float> own_;
+  std::vector<float> hints_;
+  std::vector<std::uint8_t> opaque_;
+  std::vector<float> scores_;
+};
+
+}  // namespace
+
+std::vector<float> transient_regions(const Context& context, const EllipsoidTree& tree,
+                                     std::span<const Evidence> evidence, const Contradiction& which) {
+  constexpr int kSpreads = 3;
+  Regions regions(context, tree, evidence, which);
+  regions.begin();
+  for (int i = 0; i < kSpreads; ++i)
+    regions.spread();
+  regions.fill_holes();
+  return regions.take();
+}
+
+}  // namespace ray
