@@ -40,8 +40,7 @@ ReadEnds read_ends(const Context& context, RaySource& source, CloudEllipsoids& c
       },
       [&](const RayCloud& rays, const OfChunk& chunk) {
         read.points.insert(read.points.end(), chunk.points.begin(), chunk.points.end());
-        for (const SeenPoint& point : chunk.points)
-          sampler.add(point.end);
+        sampler.add(rays, chunk.points.size());
         if (rays.empty()) return;
         cloud.rays += rays.size();
         cloud.first_time = std::min(cloud.first_time, chunk.first);
