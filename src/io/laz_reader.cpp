@@ -5,6 +5,7 @@
 #include <raycloud/core/error.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <istream>
 #include <string_view>
 #include <utility>
@@ -63,6 +64,7 @@ class LazReader::Stream : private std::streambuf {
       : input_(input),
         head_(header_for_laszip(header)),
         points_at_(header.points_at),
+        window_(header.format < 6 ? kWindow : kBuffer),
         layered_chunks_(header.layered_chunks) {
     if (header.chunk_table_lost) {
       // A table at its own address is LASzip's sign for one that was never written.
@@ -72,17 +74,44 @@ class LazReader::Stream : private std::streambuf {
     setg(buffer_.data(), buffer_.data(), buffer_.data());
   }
 
+  /// LASzip is about to read from here on.
+  void enter() { stack_ = here(); }
+
   [[nodiscard]] std::istream& stream() { return stream_; }
   /// LASzip wanted more than there is.
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
+  // LASzip reads times by calling itself, once for each of a run of marks, of which a byte holds up to 36
+  // 000: a file may have more of them than the stack has room, 48 bytes each. It comes here for every few
+  // bytes, for each where it is deep already, and then no further.
+  static constexpr std::size_t kBuffer = 1 << 16;
+  static constexpr std::size_t kWindow = 4;
+  static constexpr std::uintptr_t kDeep = 1 << 12, kTooDeep = 1 << 19;
+
+  static std::uintptr_t here() { return reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0)); }
+  [[nodiscard]] std::uintptr_t depth() const {
+    const std::uintptr_t at = here();
+    return std::max(at, stack_) - std::min(at, stack_);
+  }
+
   int_type underflow() override {
-    at_ += static_cast<std::uint64_t>(egptr() - eback());
-    const std::size_t got = fill();
-    setg(buffer_.data(), buffer_.data(), buffer_.data() + got);
-    ended_ = got == 0;
-    return ended_ ? traits_type::eof() : traits_type::to_int_type(buffer_[0]);
+    const std::uintptr_t deep = depth();
+    if (deep > kTooDeep) return traits_type::eof();
+    if (gptr() == buffer_.data() + filled_) {
+      at_ += filled_;
+      filled_ = fill();
+      setg(buffer_.data(), buffer_.data(), buffer_.data());
+    }
+    ended_ = filled_ == 0;
+    if (ended_) return traits_type::eof();
+    show_window(gptr(), deep > kDeep ? 1 : window_);
+    return traits_type::to_int_type(*gptr());
+  }
+
+  void show_window(char* from, std::size_t bytes) {
+    char* end = buffer_.data() + filled_;
+    setg(buffer_.data(), from, static_cast<std::size_t>(end - from) > bytes ? from + bytes : end);
   }
 
   [[nodiscard]] std::uint64_t position() const { return at_ + static_cast<std::uint64_t>(gptr() - eback()); }
@@ -110,10 +139,11 @@ class LazReader::Stream : private std::streambuf {
     const pos_type position = to;
     if (to < 0) return pos_type(off_type(-1));
     const off_type inside = to - static_cast<off_type>(at_);
-    if (inside >= 0 && inside <= egptr() - eback()) {
-      setg(eback(), eback() + inside, egptr());
+    if (inside >= 0 && inside <= static_cast<off_type>(filled_)) {
+      show_window(buffer_.data() + inside, window_);
     } else {
       at_ = static_cast<std::uint64_t>(to);
+      filled_ = 0;
       setg(buffer_.data(), buffer_.data(), buffer_.data());
     }
     return position;
@@ -135,12 +165,15 @@ class LazReader::Stream : private std::streambuf {
   const InputFile& input_;
   std::vector<std::byte> head_;
   std::uint64_t points_at_;
+  std::size_t window_;  ///< bytes that LASzip takes without asking
+  std::uintptr_t stack_ = here();
   const std::vector<std::uint64_t> layered_chunks_;
   bool table_seen_ = false;
   std::uint64_t told_ = 0;  ///< the last position that was asked for
   std::uint64_t at_ = 0;    ///< position of the buffer
+  std::size_t filled_ = 0;  ///< bytes of the buffer
   bool ended_ = false;
-  std::vector<char> buffer_ = std::vector<char>(1 << 16);
+  std::vector<char> buffer_ = std::vector<char>(kBuffer);
   std::istream stream_{this};
 };
 
@@ -213,6 +246,7 @@ LazReader::LazReader(const InputFile& input, const LasHeader& header, LazFields 
     : name_(input.path().string()), point_count_(header.point_count), chunk_rows_(laz_chunk_rows(header)) {
   check_laszip_record(input, header);
   stream_ = std::make_unique<Stream>(input, header);
+  stream_->enter();
   if (laszip_create(&laszip_) != 0) throw Error(ErrorCode::file_format, name_ + ": LASzip cannot start");
   if (!header.compatibility_record.empty()) laszip_request_compatibility_mode(laszip_, 1);
   if (fields == LazFields::coordinates_and_colours)
@@ -262,11 +296,13 @@ void LazReader::fail(std::uint64_t row, std::uint64_t first) const {
 }
 
 void LazReader::seek(std::uint64_t row) {
+  stream_->enter();
   if (laszip_seek_point(laszip_, static_cast<laszip_I64>(row)) != 0) fail(row, row);
   next_ = decoded_ = row;
 }
 
 bool LazReader::read_point() {
+  stream_->enter();
   if (laszip_read_point(laszip_) != 0) return false;
   ++decoded_;
   return true;
