@@ -91,10 +91,10 @@ void EllipsoidTree::close(const Context& context) {
   for (const Bounds& pack : bounds)
     all.add(pack);
   // Single precision is good for 2^-24 of the largest coordinate; a line is judged by a few operations.
-  constexpr double kRounding = 2e-6;
+  constexpr double kRounded = 2e-6;
   const double largest =
       std::max((all.max - origin_).cwiseAbs().maxCoeff(), (all.min - origin_).cwiseAbs().maxCoeff());
-  slack_ = kRounding * largest + 1e-6;
+  slack_ = kRounded * largest + 1e-6;
   min_ = all.min.array() - slack_;
   max_ = all.max.array() + slack_;
   levels_.clear();
