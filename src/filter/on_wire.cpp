@@ -26,9 +26,7 @@ std::vector<NearWire> around(NeighbourSearch& search, std::size_t place, double 
   const PointTree& tree = search.tree();
   const auto found = search.nearest(place, kAroundWire, reach);
   std::vector<Neighbour> sorted(found.begin(), found.end());
-  std::sort(sorted.begin(), sorted.end(), [&](const Neighbour& a, const Neighbour& b) {
-    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : tree.index(a.place) < tree.index(b.place);
-  });
+  std::sort(sorted.begin(), sorted.end(), nearer_first(tree));
   std::vector<NearWire> result;
   for (const Neighbour& near : sorted)
     result.push_back(

@@ -219,11 +219,7 @@ std::span<const Neighbour> LeafSurroundings::exact(std::size_t place, std::size_
     kept += distance2 <= reach2 ? 1 : 0;
   }
   if (kept > count) {
-    std::sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(kept),
-              [&](const Neighbour& a, const Neighbour& b) {
-                return a.distance2 != b.distance2 ? a.distance2 < b.distance2
-                                                  : tree_.index_[a.place] < tree_.index_[b.place];
-              });
+    std::sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(kept), nearer_first(tree_));
     kept = count;
   }
   return {found_.data(), kept};

@@ -166,11 +166,7 @@ void TreeWalk::sort_nearest() {
   std::array<Neighbour, kRoom> sorted;
   for (std::size_t i = 0; i < count_; ++i)
     sorted[i] = {distance2_[i], place_[i]};
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_),
-            [&](const Neighbour& a, const Neighbour& b) {
-              return a.distance2 != b.distance2 ? a.distance2 < b.distance2
-                                                : tree_.index_[a.place] < tree_.index_[b.place];
-            });
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_), nearer_first(tree_));
   count_ = std::min(count_, most_);
   for (std::size_t i = 0; i < count_; ++i) {
     distance2_[i] = sorted[i].distance2;

@@ -13,6 +13,13 @@ struct Neighbour {
   std::uint32_t place = 0;
 };
 
+/// The order of neighbours: by distance, equal ones by the index of the point.
+inline auto nearer_first(const PointTree& tree) {
+  return [&tree](const Neighbour& a, const Neighbour& b) {
+    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : tree.index(a.place) < tree.index(b.place);
+  };
+}
+
 /// Searches in a tree, with the memory that they need (about 50 kB); one for each thread. Made for all points
 /// one after the other, in the order of the tree: what is around a leaf is gathered once for its points.
 class NeighbourSearch {
