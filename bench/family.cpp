@@ -70,7 +70,7 @@ void rates(const Paths& p) {
 void grid(const Paths& p) {
   const std::string folder = p.file("cells");
   const std::string out = folder + "/cell.ply";
-  const Result result = time_alone({p.command("raysplit -q " + p.big + " grid 13,13,0 -o " + out),
+  const Result result = time_alone({p.command("raysplit -q " + p.big + " grid 15,15,15 -o " + out),
                                     "rm -rf " + folder + "; mkdir " + folder},
                                    2);
   run("ls " + folder + " | wc -l > " + p.file("cells.txt") + "; grep -ah 'element vertex' " + folder +
