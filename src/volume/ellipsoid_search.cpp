@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace ray {
 namespace {
@@ -18,6 +22,28 @@ constexpr float kMargin = 1.01F;
 /// Numbers of eight at once; plain loops over so few are not made parallel by compilers.
 using Lanes = Eigen::Array<float, 8, 1>;
 using ConstLanes = Eigen::Map<const Lanes>;
+
+/// A bit for each that is 0 or more. Not a number is not.
+std::uint32_t at_least_zero(const Lanes& lanes) {
+#ifdef __SSE2__
+  const auto mask = [](const float* four) {
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmpge_ps(_mm_loadu_ps(four), _mm_setzero_ps())));
+  };
+  return mask(lanes.data()) | mask(lanes.data() + 4) << 4;
+#else
+  std::uint32_t bits = 0;
+  for (Eigen::Index i = 0; i < lanes.size(); ++i)
+    bits |= std::uint32_t{lanes[i] >= 0.0F} << i;
+  return bits;
+#endif
+}
+
+/// `work(i)` for each bit i that is set.
+template <class Work>
+void each_bit(std::uint32_t bits, const Work& work) {
+  for (; bits != 0; bits &= bits - 1)
+    work(static_cast<std::size_t>(std::countr_zero(bits)));
+}
 
 template <class Data>
 void fetch(const Data& data) {
@@ -111,9 +137,7 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
       enters = enters.max((near - from[axis]) * inverse[axis]);
       leaves = leaves.min((far - from[axis]) * inverse[axis]);
     }
-    const Lanes within = leaves - enters;
-    for (std::size_t i = 0; i < kParts; ++i) {
-      if (!(within[static_cast<Eigen::Index>(i)] >= 0.0F)) continue;
+    each_bit(at_least_zero(leaves - enters), [&, level = level, number = number](std::size_t i) {
       const std::size_t part = kParts * number + i;
       if (level > 0) {
         open.push(level - 1, part);
@@ -123,7 +147,7 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
         met[waiting++] = static_cast<std::uint32_t>(part);
         fetch(packs_[part]);
       }
-    }
+    });
   }
   meet_all();
 }
@@ -150,22 +174,19 @@ void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::
   const Lanes along = wx * sx + wy * sy + wz * sz;
   const Lanes rounding = 2.0F * kRounding * (xx + yy + zz) * ((wx * wx + wy * wy + wz * wz) * way2 + from2);
   const Lanes half2 = way2 - from2 * way2 + along * along;
-  const Lanes meets = half2 + rounding + (kMargin - 1.0F) * way2;
-  for (Eigen::Index i = 0; i < meets.size(); ++i) {
-    if (!(meets[i] >= 0.0F)) continue;
-    // In units of way2 from the middle of the chord, whose half squared is half2. A line that surely begins
-    // or ends inside, or does not reach the middle, does not cross.
-    const float w = std::sqrt(wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
-    const float unit = kRounding * (xx[i] + yy[i] + zz[i]);
-    const float inside = half2[i] - rounding[i] - unit;
-    const auto crosses = [&](float place, float side) {
-      const float at = side * (place * way2[i] + along[i]);
-      const float doubt = unit * (std::abs(place) + w);
-      return at >= -doubt && (at + doubt) * (at + doubt) >= inside;
-    };
-    if (!crosses(start, -1.0F) || !crosses(end, 1.0F)) continue;
-    slots.push_back(static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i));
-  }
+  std::uint32_t met = at_least_zero(half2 + rounding + (kMargin - 1.0F) * way2);
+  if (met == 0) return;
+  // In units of way2 from the middle of the chord, whose half squared is half2. A line that surely begins
+  // or ends inside, or does not reach the middle, does not cross.
+  const Lanes w = (wx * wx + wy * wy + wz * wz).sqrt();
+  const Lanes unit = kRounding * (xx + yy + zz);
+  const Lanes inside = half2 - rounding - unit;
+  const auto crosses = [&](float place, float side) {
+    const Lanes surely = side * (place * way2 + along) + unit * (std::abs(place) + w);
+    return at_least_zero(surely) & at_least_zero(surely * surely - inside);
+  };
+  met &= crosses(start, -1.0F) & crosses(end, 1.0F);
+  each_bit(met, [&](std::size_t i) { slots.push_back(static_cast<std::uint32_t>(kPack * p + i)); });
 }
 
 void EllipsoidTree::holding(const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const {
@@ -178,19 +199,18 @@ void EllipsoidTree::holding(const Eigen::Vector3d& point, std::vector<std::uint3
   while (!open.empty()) {
     const auto [level, number] = open.pop();
     const Boxes& boxes = levels_[level][number];
-    Lanes out = Lanes::Constant(-std::numeric_limits<float>::infinity());  // above 0: outside
+    Lanes depth = Lanes::Constant(std::numeric_limits<float>::infinity());  // below 0: outside
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float place = at[static_cast<Eigen::Index>(axis)];
-      out =
-          out.max(ConstLanes(boxes.min[axis].data()) - place).max(place - ConstLanes(boxes.max[axis].data()));
+      depth = depth.min(place - ConstLanes(boxes.min[axis].data()))
+                  .min(ConstLanes(boxes.max[axis].data()) - place);
     }
-    for (std::size_t i = 0; i < kParts; ++i) {
-      if (out[static_cast<Eigen::Index>(i)] > 0.0F) continue;
+    each_bit(at_least_zero(depth), [&, level = level, number = number](std::size_t i) {
       if (level > 0)
         open.push(level - 1, kParts * number + i);
       else
         hold_pack(kParts * number + i, point, slots);
-    }
+    });
   }
 }
 
@@ -206,11 +226,11 @@ void EllipsoidTree::hold_pack(std::size_t p, const Eigen::Vector3d& point,
   const Lanes value = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
                       wz * (xz * wx + yz * wy + zz * wz);
   const Lanes doubt = kRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
-  for (Eigen::Index i = 0; i < value.size(); ++i) {
-    if (value[i] > 1.0F + doubt[i]) continue;
-    const auto slot = static_cast<std::uint32_t>(kPack * p) + static_cast<std::uint32_t>(i);
-    if (value[i] < 1.0F - doubt[i] || is_inside(at_slot(slot), point)) slots.push_back(slot);
-  }
+  each_bit(at_least_zero(1.0F + doubt - value), [&](std::size_t i) {
+    const auto slot = static_cast<std::uint32_t>(kPack * p + i);
+    const auto lane = static_cast<Eigen::Index>(i);
+    if (value[lane] < 1.0F - doubt[lane] || is_inside(at_slot(slot), point)) slots.push_back(slot);
+  });
 }
 
 }  // namespace ray
