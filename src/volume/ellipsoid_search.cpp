@@ -186,6 +186,8 @@ void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::
     return at_least_zero(surely) & at_least_zero(surely * surely - inside);
   };
   met &= crosses(start, -1.0F) & crosses(end, 1.0F);
+  if (met == 0) return;
+  fetch(normals_[kPack * p]);
   each_bit(met, [&](std::size_t i) { slots.push_back(static_cast<std::uint32_t>(kPack * p + i)); });
 }
 

@@ -73,6 +73,8 @@ void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeSc
   for (const std::uint32_t i : coherent_order(rays, true)) {
     tree.holding(rays.ends[i], slots);
     const std::uint16_t tick = scale.tick(rays.times[i]);
+    for (const std::uint32_t slot : slots)
+      __builtin_prefetch(&first_[slot], 1);
     for (const std::uint32_t slot : slots) {
       const std::uint32_t at =
           std::atomic_ref<std::uint32_t>(counts_[slot]).fetch_add(1, std::memory_order_relaxed);
@@ -112,6 +114,8 @@ void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule
   for (const std::uint32_t i : coherent_order(rays, false)) {
     tree.near_line(rays.starts[i], rays.ends[i], slots);
     if (slots.empty()) continue;
+    for (const std::uint32_t slot : slots)
+      __builtin_prefetch(&evidence[slot], 1);
     const RayPath path(rays, i);
     const std::uint16_t look = look_of(rays.times[i], path.way(), rule.look_time);
     const std::uint16_t tick = scale.tick(rays.times[i]);
