@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 #include "cloud_to_cloud.h"
+#include "combine_maps.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/filter/combine.h>
@@ -15,7 +16,19 @@ const Command kCommand{
     .name = "raycombine",
     .summary = "put ray clouds together",
     .description =
-        R"(Writes one cloud with every ray of the clouds given, one cloud after the other, each ray as it was.
+        R"(Writes one cloud of several, one after the other, each ray as it was. `all` takes every ray. The other
+words merge maps: where N rays of one cloud, divided by the opacity of the place, have seen through what
+another cloud holds, one of the two gives way:
+
+  min     what was seen through goes: what stays is in all of them
+  max     the rays that saw through it go: everything that is in one of them stays
+  oldest  what was seen earlier at that place stays
+  newest  what was seen later there stays
+  order   what an earlier cloud of the command line says stays
+
+What gave way is in the second file. A ray that several clouds have comes once. The clouds must lie on each
+other to better than 5 cm; what is 5 cm apart counts as changed.
+
 The clouds may have different columns: the result has the columns of all, and where a cloud lacks one it
 is filled with 0, or NaN for real numbers. It is in double precision if one of the clouds is.
 
@@ -24,35 +37,39 @@ starts to rounding. The column `clipped` goes away with the last piece.)",
     .usages = {{.name = "all",
                 .words = {optional(literal("all")), clouds()},
                 .help = "every ray of every cloud",
-                .example = "raycombine cloud1.ply cloud2.ply -o both.ply"}},
+                .example = "raycombine cloud1.ply cloud2.ply -o both.ply"},
+               {.name = "merge",
+                .words = {choice("KIND", {"min", "max", "oldest", "newest", "order"}), clouds(),
+                          count("N", "ray")},
+                .help = "one map; N rays of another cloud see through what has changed",
+                .example = "raycombine newest monday.ply tuesday.ply 10 rays"}},
     .options = {output_option("CLOUD1_combined.ply"),
-                {.name = "join", .help = "make whole rays of the pieces that raysplit cut"},
-                view_option()},
-    .writes = "CLOUD1_combined.ply, after the name of the first cloud",
+                {.name = "join",
+                 .help = "make whole rays of the pieces that raysplit cut",
+                 .usages = {"all"}},
+                view_option(),
+                {.name = "paper",
+                 .help = "the plain rule of the paper: every ray that crosses a place counts, and each place "
+                         "by itself",
+                 .advanced = true,
+                 .usages = {"merge"}}},
+    .writes =
+        "CLOUD1_combined.ply, after the name of the first cloud; merging also CLOUD1_differences.ply, unless "
+        "the result takes the place of one of the clouds",
     .memory =
         "Less than 200 MB for any number of clouds of any size. `--join` takes 200 bytes for each piece "
-        "besides.",
-    .see_also = {"raysplit"}};
-
-ray::CombinedSource open_all(const std::vector<std::string>& files) {
-  std::vector<ray::CloudToCombine> clouds;
-  for (const std::string& file : files)
-    clouds.push_back({file, [file] { return ray::open_ray_cloud(file); }});
-  return ray::CombinedSource(std::move(clouds));
-}
+        "besides. Merging takes up to 130 bytes a ray, whatever --memory allows.",
+    .see_also = {"raysplit", "raytransients", "rayrestore"}};
 
 std::string number_of(std::uint64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-void run(const Match& match, Session& session) {
+void combine(const Match& match, Session& session) {
   const std::vector<std::string>& files = match.files("CLOUDS");
   const std::filesystem::path output = main_output(match, files.front(), "_combined");
-  ray::CombinedSource source = open_all(files);
-  for (const std::string& warning : source.warnings())
-    session.warn(warning);
-  for (const std::string& note : source.notes())
-    session.note(note);
+  ray::CombinedSource source = ray::tools::open_all(files);
+  ray::tools::tell_of(source, session);
   ray::CloudInfo info = source.info();
   info.history.push_back(session.history());
 
@@ -85,6 +102,21 @@ void run(const Match& match, Session& session) {
                  " without a neighbour left");
   }
   session.summary({.rays_in = counts.stream.rays_in, .rays_out = counts.stream.rays_out, .files = {output}});
+}
+
+void merge(const Match& match, Session& session) {
+  const std::vector<std::string>& files = match.files("CLOUDS");
+  const std::string& kind = match.text("KIND");
+  if (files.size() == 1)
+    match.reject("CLOUDS", kind + " merges two clouds or more; within one it is for raytransients");
+  ray::tools::merge_files(match, session, files,
+                          {.merge = ray::tools::merge_of(kind),
+                           .rays = static_cast<double>(match.integer("N")),
+                           .paper = match.has("--paper")});
+}
+
+void run(const Match& match, Session& session) {
+  match.usage() == "merge" ? merge(match, session) : combine(match, session);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // How true normals, smoothing and denoising are, on scenes whose truth is known.
-//   bench_accuracy [normals|smoothing|denoising|transients]
+//   bench_accuracy [normals|smoothing|denoising|transients|merging]
 // Prints Markdown tables; the same numbers on every run, whatever the threads.
 
 #include "tables.h"
@@ -10,8 +10,8 @@
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
   if (argc > 2 || (argc == 2 && only != "normals" && only != "smoothing" && only != "denoising" &&
-                   only != "transients")) {
-    std::fprintf(stderr, "usage: bench_accuracy [normals|smoothing|denoising|transients]\n");
+                   only != "transients" && only != "merging")) {
+    std::fprintf(stderr, "usage: bench_accuracy [normals|smoothing|denoising|transients|merging]\n");
     return 2;
   }
   if (only.empty() || only == "normals") bench::print_normals();
@@ -25,5 +25,6 @@ int main(int argc, char** argv) {
     bench::print_opacity();
     bench::print_transients();
   }
+  if (only.empty() || only == "merging") bench::print_merging();
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace ray {
@@ -13,8 +14,17 @@ namespace ray {
 struct CombinedSource::Member {
   CloudToCombine cloud;
   std::vector<ColumnInfo> extras;
+  Precision precision;
+  std::optional<std::uint64_t> ray_count;
   std::unique_ptr<RaySource> source;        ///< while it is open
   mutable std::atomic<std::size_t> coming;  ///< chunks fetched and not yet decoded
+
+  [[nodiscard]] std::unique_ptr<RaySource> open() const {
+    std::unique_ptr<RaySource> opened = cloud.open();
+    if (opened->info().extras != extras)
+      throw Error(ErrorCode::file_format, cloud.name + ": changed while it was being read");
+    return opened;
+  }
 };
 
 namespace {
@@ -43,6 +53,32 @@ Column filled(const ColumnInfo& info, std::size_t rows) {
 
 }  // namespace
 
+class CombinedSource::Alone final : public RaySource {
+ public:
+  Alone(const CombinedSource& all, const Member& member) : all_(all), member_(member), info_(all.info_) {
+    info_.precision = member.precision;
+    info_.ray_count = member.ray_count;
+  }
+
+  [[nodiscard]] const CloudInfo& info() const override { return info_; }
+  [[nodiscard]] bool fetch(RawChunk& raw) override {
+    if (source_ == nullptr) source_ = member_.open();
+    return source_->fetch(raw);
+  }
+  std::size_t decode(const RawChunk& raw, RayCloud& rays) const override {
+    const std::size_t dropped = source_->decode(raw, rays);
+    all_.unite_columns(member_, rays);
+    return dropped;
+  }
+  void rewind() override { source_.reset(); }
+
+ private:
+  const CombinedSource& all_;
+  const Member& member_;
+  CloudInfo info_;
+  std::unique_ptr<RaySource> source_;
+};
+
 CombinedSource::CombinedSource(std::vector<CloudToCombine> clouds) {
   if (clouds.empty()) throw Error(ErrorCode::usage, "there is no cloud to combine");
   std::vector<NamedInfo> infos;
@@ -51,6 +87,8 @@ CombinedSource::CombinedSource(std::vector<CloudToCombine> clouds) {
     auto member = std::make_unique<Member>();
     member->cloud = std::move(cloud);
     member->extras = infos.back().info.extras;
+    member->precision = infos.back().info.precision;
+    member->ray_count = infos.back().info.ray_count;
     members_.push_back(std::move(member));
   }
   UnitedInfo united = unite(infos);
@@ -77,11 +115,7 @@ bool CombinedSource::fetch(RawChunk& raw) {
 
 void CombinedSource::open_current() {
   Member& member = *members_[current_];
-  if (member.source != nullptr) return;
-  member.source = member.cloud.open();
-  if (member.source->info().extras != member.extras) {
-    throw Error(ErrorCode::file_format, member.cloud.name + ": changed while it was being read");
-  }
+  if (member.source == nullptr) member.source = member.open();
 }
 
 void CombinedSource::close_finished() {
@@ -95,7 +129,12 @@ std::size_t CombinedSource::decode(const RawChunk& raw, RayCloud& rays) const {
   const Member& member = *members_[raw.source];
   const std::size_t dropped = member.source->decode(raw, rays);
   --member.coming;
-  if (member.extras == info_.extras) return dropped;
+  unite_columns(member, rays);
+  return dropped;
+}
+
+void CombinedSource::unite_columns(const Member& member, RayCloud& rays) const {
+  if (member.extras == info_.extras) return;
   std::vector<Column> columns;
   columns.reserve(info_.extras.size());
   for (const ColumnInfo& wanted : info_.extras) {
@@ -107,7 +146,6 @@ std::size_t CombinedSource::decode(const RawChunk& raw, RayCloud& rays) const {
     }
   }
   rays.extras = std::move(columns);
-  return dropped;
 }
 
 void CombinedSource::rewind() {
@@ -116,6 +154,10 @@ void CombinedSource::rewind() {
     member->coming = 0;
   }
   current_ = first_open_ = 0;
+}
+
+std::unique_ptr<RaySource> CombinedSource::alone(std::size_t cloud) const {
+  return std::make_unique<Alone>(*this, *members_[cloud]);
 }
 
 }  // namespace ray

@@ -1,6 +1,7 @@
 #include "contradicting_rays.h"
 
 #include "coherent_order.h"
+#include "mix_bits.h"
 #include "ray_path.h"
 
 #include <algorithm>
@@ -9,15 +10,9 @@
 namespace ray {
 namespace {
 
-std::uint64_t mixed(std::uint64_t bits) {
-  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ bits >> 27) * 0x94d049bb133111ebULL;
-  return bits ^ bits >> 31;
-}
-
 std::uint64_t hash_of(const Eigen::Vector3d& point, std::uint64_t seed) {
   for (const double coordinate : {point.x(), point.y(), point.z()})
-    seed = mixed(seed + 0x9e3779b97f4a7c15ULL + std::bit_cast<std::uint64_t>(coordinate));
+    seed = mix_bits(seed + 0x9e3779b97f4a7c15ULL + std::bit_cast<std::uint64_t>(coordinate));
   return seed;
 }
 
@@ -29,8 +24,7 @@ float fraction_of(std::uint64_t bits) {
 }  // namespace
 
 std::vector<float> contradicting_rays(const EllipsoidTree& tree, const RayCloud& rays, const PassGuard& guard,
-                                      const TimeScale& scale, std::span<const Evidence> evidence,
-                                      const std::function<float(std::uint32_t, std::size_t)>& score,
+                                      const PassScore& score,
                                       const std::function<float(std::uint32_t)>& opacity) {
   std::vector<float> scores(rays.size());
   std::vector<std::uint32_t> slots;
@@ -38,12 +32,9 @@ std::vector<float> contradicting_rays(const EllipsoidTree& tree, const RayCloud&
     tree.near_line(rays.starts[i], rays.ends[i], slots);
     if (slots.empty()) continue;
     const RayPath path(rays, i);
-    const std::uint16_t tick = scale.tick(rays.times[i]);
     const std::uint64_t hash = hash_of(rays.ends[i], std::bit_cast<std::uint64_t>(rays.times[i]));
     for (const std::uint32_t slot : slots) {
-      const std::size_t run = evidence[slot].run_at(tick);
-      if (run == Evidence::kRuns) continue;
-      const float of_slot = score(slot, run);
+      const float of_slot = score(slot, rays.times[i]);
       if (!(of_slot > scores[i])) continue;
       const Ellipsoid ellipsoid = tree.at_slot(slot);
       if (path.cross(ellipsoid, guard) != Crossing::proves_empty) continue;

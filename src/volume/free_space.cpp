@@ -1,4 +1,5 @@
 #include "coherent_order.h"
+#include "look.h"
 #include "ray_path.h"
 
 #include <raycloud/exec/parallel.h>
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 namespace ray {
 namespace {
@@ -19,23 +19,6 @@ void count(std::uint16_t& counter) {
   while (known < kMostCounted && !atomic.compare_exchange_weak(known, static_cast<std::uint16_t>(known + 1),
                                                                std::memory_order_relaxed)) {
   }
-}
-
-void add_look(std::uint16_t& looks, std::uint16_t look) {
-  const std::atomic_ref<std::uint16_t> atomic(looks);
-  if ((atomic.load(std::memory_order_relaxed) & look) == 0) atomic.fetch_or(look, std::memory_order_relaxed);
-}
-
-/// The bit of a look: a piece of time, and one of 26 directions.
-std::uint16_t look_of(double time, const Eigen::Vector3d& way, double look_time) {
-  const double most = way.cwiseAbs().maxCoeff();
-  const Eigen::Vector3d side = most > 0.0 ? Eigen::Vector3d(way / most) : way;
-  const auto third = [](double v) { return std::uint64_t{v > 0.5 ? 2U : v < -0.5 ? 0U : 1U}; };
-  const auto when = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(time / look_time)));
-  std::uint64_t hash = when * 27 + third(side.x()) + 3 * third(side.y()) + 9 * third(side.z());
-  hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9ULL;
-  hash = (hash ^ hash >> 27) * 0x94d049bb133111ebULL;
-  return static_cast<std::uint16_t>(1U << (hash >> 60));
 }
 
 /// Parts hits in order of time at their longest pauses.

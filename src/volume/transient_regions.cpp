@@ -1,9 +1,10 @@
 #include "transient_regions.h"
 
+#include "raise.h"
+
 #include <raycloud/exec/parallel.h>
 
 #include <algorithm>
-#include <atomic>
 
 namespace ray {
 namespace {
@@ -17,13 +18,6 @@ float beyond(const Transience& transience, const Transience& chance, const Contr
   return (which.before ? std::max(0.0F, transience.before - chance.before) : 0.0F) +
          (which.between ? std::max(0.0F, transience.between - chance.between) : 0.0F) +
          (which.after ? std::max(0.0F, transience.after - chance.after) : 0.0F);
-}
-
-void raise(float& value, float to) {
-  const std::atomic_ref<float> atomic(value);
-  float known = atomic.load(std::memory_order_relaxed);
-  while (known < to && !atomic.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
-  }
 }
 
 float quantile(std::vector<float>& values, std::size_t tenths) {

@@ -1,5 +1,7 @@
 #include "cloud_ellipsoids.h"
 #include "contradicting_rays.h"
+#include "count_rule.h"
+#include "each_chunk.h"
 #include "transience.h"
 #include "transient_regions.h"
 
@@ -19,30 +21,6 @@ const std::array<ColumnInfo, 4> kTransientColumns{{{"opacity", ScalarType::float
                                                    {"hits", ScalarType::uint16},
                                                    {"passes", ScalarType::uint16},
                                                    {"transience", ScalarType::float32}}};
-
-template <class Work>
-void each_chunk(const Context& context, RaySource& source, const Work& work) {
-  stream(
-      context, source, nullptr,
-      [&](const RayCloud& rays) {
-        work(rays);
-        return Nothing{};
-      },
-      [](const RayCloud&, Nothing) {});
-  source.rewind();
-}
-
-CountRule count_rule(const TransientRule& rule, double range_noise) {
-  constexpr double kSigmas = 3.0;
-  CountRule counting;
-  if (rule.paper) {
-    counting.guard = kEveryPass;
-  } else {
-    counting.guard.beyond = std::max(counting.guard.beyond, kSigmas * range_noise);
-    counting.guard.depth = std::max(counting.guard.depth, kSigmas * range_noise);
-  }
-  return counting;
-}
 
 /// All that rays tell of the ellipsoids of their own cloud.
 std::vector<Evidence> own_evidence(const Context& context, RaySource& source, const EllipsoidTree& tree,
@@ -192,12 +170,14 @@ TransientCounts split_transients(const Context& context, RaySource& source, RayS
     throw Error(ErrorCode::no_data,
                 "all rays have the same time: without an order in time nothing can be told to come or go");
   const TimeScale scale(cloud.first_time, cloud.last_time);
-  const CountRule counting = count_rule(rule, cloud.range_noise);
+  const CountRule counting = count_rule(rule.paper, cloud.range_noise);
   const std::vector<Evidence> evidence = own_evidence(context, source, tree, scale, counting, rule.paper);
   const Scores scores = scores_of(context, tree, evidence, rule);
 
   TransientWriter writer(tree, evidence, scores, rule, transient_columns(source.info().extras));
-  const auto score_pass = [&](std::uint32_t slot, std::size_t run) {
+  const auto score_pass = [&](std::uint32_t slot, double time) {
+    const std::size_t run = evidence[slot].run_at(scale.tick(time));
+    if (run == Evidence::kRuns) return 0.0F;
     const bool wanted = run >= scores.first_run && run <= scores.last_run;
     return wanted && contradicts(evidence[slot], run, rule.paper) ? scores.passes[slot] : 0.0F;
   };
@@ -213,7 +193,7 @@ TransientCounts split_transients(const Context& context, RaySource& source, RayS
           part.rows.clear();
         }
         if (scores.passes.empty()) return std::vector<float>();
-        return contradicting_rays(tree, rays, counting.guard, scale, evidence, score_pass,
+        return contradicting_rays(tree, rays, counting.guard, score_pass,
                                   [&](std::uint32_t slot) { return opacity_while_there(evidence[slot]); });
       },
       [&](RayCloud& rays, const std::vector<float>& of_passes, std::vector<StreamPart>& parts) {

@@ -124,6 +124,8 @@ raysplit $1 colour
 raysplit $1 grid 1,1,1
 raycombine $1 $1
 raycombine $1 --join
+raycombine min $1 $1 10 rays
+raycombine newest $1 $1 10 rays --paper
 raycolour $1 time
 raycolour $1 alpha 0.5
 raycolour $1 normal --lit

@@ -23,7 +23,17 @@ struct StreamCounts {
 /// The rows where a mask is not 0.
 [[nodiscard]] std::vector<std::uint32_t> rows_of(std::span<const std::uint8_t> mask);
 
-/// For each chunk: `map(rays)` on any thread, which may change the chunk and returns a value; then, in file
+/// A map that wants to know where in the source its rays are takes the fetched piece too.
+template <class Map, class... More>
+decltype(auto) map_piece(const Map& map, RayCloud& rays, const RawChunk& raw, More&... more) {
+  if constexpr (std::is_invocable_v<const Map&, RayCloud&, const RawChunk&, More&...>)
+    return map(rays, raw, more...);
+  else
+    return map(rays, more...);
+}
+
+/// For each chunk: `map(rays)`, or `map(rays, raw)`, on any thread, which may change the chunk and returns a
+/// value; then, in file
 /// order and one at a time, `fold(rays, value)`, which may change the chunk too; then the sink, if there is
 /// one, encodes on any thread and writes in order. A fold that returns a mask, one byte for each ray, sends
 /// only the rays on where it is not 0, at no cost in the serial part. Does not call `sink->finish()`. The
@@ -32,7 +42,8 @@ struct StreamCounts {
 template <class Map, class Fold>
 StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, const Map& map,
                     const Fold& fold) {
-  using Value = decltype(map(std::declval<RayCloud&>()));
+  using Value =
+      std::decay_t<decltype(map_piece(map, std::declval<RayCloud&>(), std::declval<const RawChunk&>()))>;
   constexpr bool kMasks = !std::is_void_v<decltype(fold(std::declval<RayCloud&>(), std::declval<Value&>()))>;
   struct Item {
     RawChunk raw;
@@ -50,7 +61,7 @@ StreamCounts stream(const Context& context, RaySource& source, RaySink* sink, co
                       Item& item = items[slot];
                       item.dropped = source.decode(item.raw, item.rays);
                       item.rays_in = item.rays.size();
-                      item.value = map(item.rays);
+                      item.value = map_piece(map, item.rays, item.raw);
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {
                       Item& item = items[slot];

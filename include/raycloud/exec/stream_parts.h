@@ -22,14 +22,17 @@ struct StreamPart {
   [[nodiscard]] std::size_t size() const { return of_chunk ? rows.size() : rays.size(); }
 };
 
-/// For each chunk: `map(rays, parts)` on any thread, which may change the chunk and returns a value; then, in
-/// file order and one at a time, `fold(value, parts)`; then the sink of every part encodes on any thread and
-/// writes in order, the parts of a chunk one after the other. `parts` holds what an earlier chunk left there:
-/// both functions must set what they use. A fold may take the chunk, too: `fold(rays, value, parts)`. Does
-/// not finish the sinks. Memory: pipeline_slots(context) chunks with their parts.
+/// For each chunk: `map(rays, parts)`, or `map(rays, raw, parts)`, on any thread, which may change the chunk
+/// and returns a value; then, in file order and one at a time, `fold(value, parts)`; then the sink of every
+/// part encodes on any thread and writes in order, the parts of a chunk one after the other. `parts` holds
+/// what an earlier chunk left there: both functions must set what they use. A fold may take the chunk, too:
+/// `fold(rays, value, parts)`. Does not finish the sinks. Memory: pipeline_slots(context) chunks with their
+/// parts.
 template <class Map, class Fold>
 StreamCounts stream_parts(const Context& context, RaySource& source, const Map& map, const Fold& fold) {
-  using Value = decltype(map(std::declval<RayCloud&>(), std::declval<std::vector<StreamPart>&>()));
+  using Value =
+      std::decay_t<decltype(map_piece(map, std::declval<RayCloud&>(), std::declval<const RawChunk&>(),
+                                      std::declval<std::vector<StreamPart>&>()))>;
   struct Item {
     RawChunk raw;
     RayCloud rays;
@@ -46,7 +49,7 @@ StreamCounts stream_parts(const Context& context, RaySource& source, const Map& 
                       Item& item = items[slot];
                       item.dropped = source.decode(item.raw, item.rays);
                       item.rays_in = item.rays.size();
-                      item.value = map(item.rays, item.parts);
+                      item.value = map_piece(map, item.rays, item.raw, item.parts);
                     }});
   stages.push_back({Mode::ordered, [&](std::size_t slot) {
                       Item& item = items[slot];

@@ -44,12 +44,19 @@ class CombinedSource final : public RaySource {
   std::size_t decode(const RawChunk& raw, RayCloud& rays) const override;
   void rewind() override;
 
+  [[nodiscard]] std::size_t cloud_count() const { return members_.size(); }
+  /// The rays of one cloud, with the columns of all and its own precision. It is open while it is read, from
+  /// the first fetch to the next rewind. This must outlive it.
+  [[nodiscard]] std::unique_ptr<RaySource> alone(std::size_t cloud) const;
+
  private:
   /// One of the clouds.
   struct Member;
+  class Alone;
 
   void open_current();
   void close_finished();
+  void unite_columns(const Member& member, RayCloud& rays) const;
 
   std::vector<std::unique_ptr<Member>> members_;
   CloudInfo info_;

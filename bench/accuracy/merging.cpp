@@ -1,0 +1,247 @@
+// What merging two maps of a changed world takes out and what it keeps, on simulated scans.
+
+#include "street_scene.h"
+#include "tables.h"
+
+#include <raycloud/core/memory_stream.h>
+#include <raycloud/exec/stream.h>
+#include <raycloud/spatial/surfel.h>
+#include <raycloud/synth/scene_caster.h>
+#include <raycloud/synth/scenes.h>
+#include <raycloud/synth/simulate.h>
+#include <raycloud/volume/free_space.h>
+#include <raycloud/volume/merge_clouds.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bench {
+namespace {
+
+constexpr std::array kMergeNumbers{2.0, 10.0, 20.0};
+constexpr double kUsualNumber = 10.0;
+constexpr int kSeenThroughBy = 10;    // rays, at least, for a changed point to count
+constexpr double kNextDay = 86400.0;  // s
+
+struct WorldPair {
+  ray::Scene first, second;
+  ray::Scene only_first, only_second;  ///< what the other has not
+};
+
+/// Things with that label are by turns in the first and in the second only; the second scan goes the path the
+/// other way round.
+WorldPair changed(const ray::Scene& scene, ray::SceneLabel label) {
+  WorldPair pair;
+  pair.first = pair.second = scene;
+  pair.only_first.path = pair.only_second.path = scene.path;
+  pair.first.objects.clear();
+  pair.second.objects.clear();
+  const auto add = [](ray::Scene& to, ray::SceneObject object) {
+    object.id = static_cast<std::int32_t>(to.objects.size());
+    object.present = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    to.objects.push_back(std::move(object));
+  };
+  bool in_first = true;
+  for (const ray::SceneObject& object : scene.objects) {
+    if (object.label != label) {
+      add(pair.first, object);
+      add(pair.second, object);
+      continue;
+    }
+    add(in_first ? pair.first : pair.second, object);
+    add(in_first ? pair.only_first : pair.only_second, object);
+    in_first = !in_first;
+  }
+  std::reverse(pair.second.path.positions.begin(), pair.second.path.positions.end());
+  return pair;
+}
+
+ray::EllipsoidTree ellipsoids_around(const ray::RayCloud& rays) {
+  std::vector<ray::SeenPoint> points;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0)
+      points.push_back({rays.ends[i], ray::pack_direction(rays.starts[i] - rays.ends[i])});
+  ray::EllipsoidTree tree({}, points.size(), [&](std::size_t i) { return points[i].end; });
+  const ray::PointTree near({}, points);
+  ray::NeighbourSearch search(near);
+  for (std::size_t place = 0; place < near.size(); ++place) {
+    const std::uint32_t i = near.index(place);
+    tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = false}), points[i].end,
+                                  ray::unpack_direction(points[i].to_sensor), 0.015));
+  }
+  tree.close({});
+  return tree;
+}
+
+struct HowScanned {
+  std::string name;
+  std::uint64_t rays = 300'000;
+  bool standing = false;
+};
+
+/// With the columns `changed` (the end is on a thing that the other has not) and `through` (the ray goes
+/// through a thing that only the other has), and times from `begin` on.
+ray::RayCloud scan_of(const ray::Scene& scene, const ray::Scene& of_other, ray::SceneLabel label,
+                      const HowScanned& how, double begin, std::uint64_t seed) {
+  ray::SimulationOptions options{.rays = how.rays, .truth = true, .seed = seed};
+  if (how.standing) options.scanner = ray::StandingScanner{};
+  ray::RayCloud rays = read_all({}, *simulate(scene, options));
+  const auto labels = rays.extra("label")->values<std::uint8_t>();
+  ray::Column ends({"changed", ray::ScalarType::uint8}, rays.size());
+  ray::Column through({"through", ray::ScalarType::uint8}, rays.size());
+  const ray::SceneCaster caster(of_other);
+  constexpr double kBeyond = 0.1;  // m
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ends.values<std::uint8_t>()[i] = labels[i] == static_cast<std::uint8_t>(label) ? 1 : 0;
+    const Eigen::Vector3d way = rays.ends[i] - rays.starts[i];
+    const double length = way.norm();
+    const bool meets = !of_other.objects.empty() && length > kBeyond &&
+                       caster.cast(rays.starts[i], way / length, length - kBeyond, 0.0).has_value();
+    through.values<std::uint8_t>()[i] = meets ? 1 : 0;
+    rays.times[i] += begin;
+  }
+  rays.extras.clear();
+  rays.extras.emplace_back(ray::ColumnInfo{"crossings", ray::ScalarType::uint16}, rays.size());
+  rays.extras.push_back(std::move(ends));
+  rays.extras.push_back(std::move(through));
+  return rays;
+}
+
+/// For each ray, how many rays of the other cloud go through the ellipsoid around its end and on for 5 cm; 0
+/// for unbounded ones.
+std::vector<std::uint16_t> crossings_of(const ray::RayCloud& rays, const ray::RayCloud& of_other) {
+  const ray::EllipsoidTree tree = ellipsoids_around(rays);
+  std::vector<ray::Evidence> evidence(tree.size());
+  add_passes(tree, of_other, {}, {0.0, 1.0}, evidence);
+  std::vector<std::uint16_t> crossings(rays.size());
+  for (std::size_t i = 0, next = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0) {
+      const ray::Evidence& of = evidence[tree.slot(next++)];
+      crossings[i] = std::accumulate(of.passes.begin(), of.passes.end(), of.within);
+    }
+  return crossings;
+}
+
+struct Halves {
+  ray::RayCloud stays, goes;
+};
+
+Halves merged(const ray::RayCloud& first, const ray::RayCloud& second, const ray::MergeRule& rule) {
+  ray::MemorySource a(first), b(second);
+  const std::array<ray::RaySource*, 2> clouds{&a, &b};
+  ray::MemorySink stays(schema_of(first)), goes(schema_of(first));
+  merge_clouds({}, clouds, stays, &goes, rule);
+  return {stays.cloud(), goes.cloud()};
+}
+
+/// Shares of the bounded ends, or of all rays, that a column marks and that it does not.
+struct Parts {
+  double marked = 0.0, others = 0.0;
+};
+
+template <class Wanted>
+Parts parts_of(const ray::RayCloud& rays, const char* column, const Wanted& wanted) {
+  Parts parts;
+  const auto marks = rays.extra(column)->values<std::uint8_t>();
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (wanted(i)) (marks[i] != 0 ? parts.marked : parts.others) += 1.0;
+  return parts;
+}
+
+/// % of the others that stay and % of the marked ones that go.
+std::pair<double, double> kept_and_gone(const Parts& stays, const Parts& goes) {
+  const auto percent = [](double part, double rest) {
+    return part + rest > 0.0 ? 100.0 * part / (part + rest) : 100.0;
+  };
+  return {percent(stays.others, goes.others), percent(goes.marked, stays.marked)};
+}
+
+void merge_rows(const HowScanned& how, const ray::Scene& scene, ray::SceneLabel label, double least_gone) {
+  const WorldPair pair = changed(scene, label);
+  ray::RayCloud first = scan_of(pair.first, pair.only_second, label, how, 0.0, 1);
+  ray::RayCloud second = scan_of(pair.second, pair.only_first, label, how, kNextDay, 2);
+  for (auto [own, other] : {std::pair{&first, &second}, {&second, &first}}) {
+    const auto crossings = crossings_of(*own, *other);
+    std::copy(crossings.begin(), crossings.end(), own->extra("crossings")->values<std::uint16_t>().begin());
+  }
+  const bool changes = !pair.only_first.objects.empty();
+  const auto row = [&](const char* what, const ray::MergeRule& rule, bool every_number, const auto& judge) {
+    std::printf("| %s, %s |", how.name.c_str(), what);
+    const bool strict = rule.merge == ray::CloudMerge::min;
+    const double least_kept = strict ? 99.9 : 99.5;
+    bool met = true;
+    for (const double n : kMergeNumbers) {
+      if (n != kUsualNumber && !every_number) {
+        std::printf(" |");
+        continue;
+      }
+      ray::MergeRule with = rule;
+      with.rays = n;
+      const auto [kept, gone] = judge(merged(first, second, with));
+      changes ? std::printf(" %.2f, %.2f |", kept, gone) : std::printf(" %.2f |", kept);
+      if (n == kUsualNumber) met = kept >= least_kept && gone >= least_gone;
+    }
+    const bool has_bar = least_gone > 0.0 && !rule.paper;
+    std::printf(
+        " %s |\n",
+        has_bar ? verdict(strict ? "kept ≥ 99.9, gone ≥ 95" : "kept ≥ 99.5, gone ≥ 95", met).c_str() : " |");
+    std::fflush(stdout);
+  };
+  // Points that enough rays of the other cloud tell of, and rays that end on what is the same in both.
+  const auto ends_of = [](const ray::RayCloud& rays, double until) {
+    const auto crossings = rays.extra("crossings")->values<std::uint16_t>();
+    const auto changed_ends = rays.extra("changed")->values<std::uint8_t>();
+    const auto through = rays.extra("through")->values<std::uint8_t>();
+    return parts_of(rays, "changed", [=, &rays](std::size_t i) {
+      return rays.bounded[i] != 0 && rays.times[i] < until &&
+             (changed_ends[i] != 0 ? crossings[i] >= kSeenThroughBy : through[i] == 0);
+    });
+  };
+  const auto ends = [&](const Halves& halves) {
+    constexpr double kAllTime = std::numeric_limits<double>::infinity();
+    return kept_and_gone(ends_of(halves.stays, kAllTime), ends_of(halves.goes, kAllTime));
+  };
+  const auto older_ends = [&](const Halves& halves) {
+    return kept_and_gone(ends_of(halves.stays, kNextDay), ends_of(halves.goes, kNextDay));
+  };
+  const auto rays = [&](const Halves& halves) {
+    const auto all = [](std::size_t) { return true; };
+    return kept_and_gone(parts_of(halves.stays, "through", all), parts_of(halves.goes, "through", all));
+  };
+  row("min", {.merge = ray::CloudMerge::min}, true, ends);
+  row("min, --paper", {.merge = ray::CloudMerge::min, .paper = true}, false, ends);
+  row("max", {.merge = ray::CloudMerge::max}, false, rays);
+  row("newest", {.merge = ray::CloudMerge::newest}, false, older_ends);
+}
+
+}  // namespace
+
+void print_merging() {
+  std::printf(
+      "\nMerging two scans of a world in which things have changed places: %% of what did not change that "
+      "stays, and of what did that goes. For min these are points, the latter those that %d rays of the other "
+      "scan went through and on for 5 cm; for newest the same of the older scan; for max rays, the latter "
+      "those that go through a thing which only the other scan has\n\n| scans |",
+      kSeenThroughBy);
+  for (const double n : kMergeNumbers)
+    std::printf(" n = %.0f |", n);
+  std::printf(" bar, n = 10 | |\n|---|---|---|---|---|---|\n");
+  using Label = ray::SceneLabel;
+  const ray::Scene room = make_scene(ray::SceneKind::room, 2);
+  merge_rows({.name = "room"}, room, Label::furniture, 95.0);
+  merge_rows({.name = "room, from a tripod", .standing = true}, room, Label::furniture, 95.0);
+  merge_rows({.name = "building, sparse", .rays = 1'000'000}, make_scene(ray::SceneKind::building, 2),
+             Label::furniture, 0.0);
+  merge_rows({.name = "street", .rays = 600'000}, street_scene(7, 0), Label::vehicle, 95.0);
+  merge_rows({.name = "yard, nothing changed", .rays = 400'000}, street_scene(8, 0), Label::boulder, 0.0);
+  merge_rows({.name = "forest, nothing changed"}, make_scene(ray::SceneKind::forest, 2), Label::vehicle, 0.0);
+}
+
+}  // namespace bench
