@@ -1,10 +1,13 @@
 #include "combine_maps.h"
 
+#include "cli/grouped.h"
 #include "cloud_to_cloud.h"
 #include "step.h"
 
 #include <raycloud/core/error.h>
+#include <raycloud/core/memory_stream.h>
 #include <raycloud/io/ray_cloud_file.h>
+#include <raycloud/volume/three_way.h>
 
 #include <algorithm>
 #include <array>
@@ -22,14 +25,98 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 std::string number_of_rays(std::uint64_t count) {
-  return std::to_string(count) + (count == 1 ? " ray" : " rays");
+  return cli::grouped(count) + (count == 1 ? " ray" : " rays");
 }
 
-void tell_counts(const MergeCounts& counts, cli::Session& session) {
-  note_dropped(session, counts.stream.dropped);
-  if (counts.repeated > 0)
-    session.note(number_of_rays(counts.repeated) + " that another cloud has too came once");
-  session.note(number_of_rays(counts.differences) + " gave way");
+Sources each_alone(const CombinedSource& source) {
+  Sources sources;
+  for (std::size_t i = 0; i < source.cloud_count(); ++i)
+    sources.push_back(source.alone(i));
+  return sources;
+}
+
+std::vector<RaySource*> pointers_to(const Sources& sources) {
+  std::vector<RaySource*> pointers;
+  for (const auto& source : sources)
+    pointers.push_back(source.get());
+  return pointers;
+}
+
+struct ToMerge {
+  CloudInfo info;             ///< of the result
+  RaySource* kept = nullptr;  ///< rays that come before all others, if any
+  std::vector<RaySource*> clouds;
+};
+
+/// The result and, if there is one, the differences.
+struct MergedFiles {
+  std::vector<std::filesystem::path> names;
+  bool in_place = false;
+  std::string format;  ///< where the names do not tell
+};
+
+MergedFiles merged_files(const cli::Match& match, const std::vector<std::string>& inputs, bool differences) {
+  const std::filesystem::path& input = inputs.front();
+  MergedFiles files{{cli::main_output(match, input, "_combined")}, false, cloud_format(inputs.back())};
+  for (const std::string& file : inputs)
+    files.in_place = files.in_place || same_file(file, files.names.front());
+  if (differences && !files.in_place)
+    files.names.push_back(
+        cli::output_name(match.has("--output") ? files.names.front() : input, "_differences"));
+  return files;
+}
+
+MergeCounts write_once(cli::Session& session, const ToMerge& merge, const MergeRule& rule,
+                       const MergedFiles& files, OutputPrecision& precision) {
+  std::vector<std::unique_ptr<RaySink>> sinks;
+  for (std::size_t i = 0; i < files.names.size(); ++i) {
+    CloudInfo info = precision.widened(i, merge.info);
+    info.history.push_back(session.history());
+    sinks.push_back(precision.watch(
+        i,
+        create_ray_cloud(files.names[i], info, {.flush_to_disk = files.in_place, .format = files.format})));
+  }
+  if (merge.kept != nullptr)
+    stream_each(session.context(), *merge.kept, *sinks.front(), [](const RayCloud&) {});
+  const MergeCounts counts = merge_clouds(session.context(), merge.clouds, *sinks.front(),
+                                          sinks.size() > 1 ? sinks.back().get() : nullptr, rule);
+  for (const auto& sink : sinks)
+    sink->finish();
+  return counts;
+}
+
+MergeCounts write_merged(cli::Session& session, const ToMerge& merge, const MergeRule& rule,
+                         const MergedFiles& files) {
+  OutputPrecision precision(files.names.size());
+  while (true) {
+    try {
+      return write_once(session, merge, rule, files, precision);
+    } catch (const PrecisionLoss&) {
+      // Each time one more of the outputs is double.
+      if (merge.kept != nullptr) merge.kept->rewind();
+      for (RaySource* cloud : merge.clouds)
+        cloud->rewind();
+    }
+  }
+}
+
+/// An empty file instead of a map.
+bool is_no_map(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) == 0;
+}
+
+ThreeWayColumns columns_of(const std::vector<std::string>& files, bool no_map) {
+  ThreeSchemas schemas;
+  for (std::size_t i = no_map ? 1 : 0; i < schemas.size(); ++i)
+    schemas[i] = open_ray_cloud(files[i])->info().extras;
+  if (!no_map) return three_way_columns(schemas);
+  ThreeWayColumns columns;
+  for (const auto& schema : schemas)
+    for (const ColumnInfo& column : schema)
+      if (std::find(columns.result.begin(), columns.result.end(), column.name) == columns.result.end())
+        columns.result.push_back(column.name);
+  return columns;
 }
 
 }  // namespace
@@ -57,45 +144,47 @@ void merge_files(const cli::Match& match, cli::Session& session, const std::vect
                  const MergeRule& rule) {
   const CombinedSource source = open_all(files);
   tell_of(source, session);
-  std::vector<std::filesystem::path> outputs{cli::main_output(match, files.front(), "_combined")};
-  const bool in_place = std::any_of(
-      files.begin(), files.end(), [&](const std::string& file) { return same_file(file, outputs.front()); });
-  if (!in_place) {
-    const std::filesystem::path stem =
-        match.has("--output") ? outputs.front() : std::filesystem::path(files.front());
-    outputs.push_back(cli::output_name(stem, "_differences"));
+  const Sources sources = each_alone(source);
+  const MergedFiles outputs = merged_files(match, files, true);
+  const MergeCounts counts =
+      write_merged(session, {.info = source.info(), .clouds = pointers_to(sources)}, rule, outputs);
+  note_dropped(session, counts.stream.dropped);
+  if (counts.repeated > 0)
+    session.note(number_of_rays(counts.repeated) + " that another cloud has too came once");
+  session.note(number_of_rays(counts.differences) + " gave way");
+  session.summary({.rays_in = counts.stream.rays_in, .rays_out = counts.combined, .files = outputs.names});
+}
+
+void merge_branches(const cli::Match& match, cli::Session& session, const std::vector<std::string>& files,
+                    const MergeRule& rule) {
+  const bool no_map = is_no_map(files.front());
+  const CombinedSource source = open_all(no_map ? std::vector(files.begin() + 1, files.end()) : files);
+  for (const std::string& warning : source.warnings())
+    session.warn(warning);
+  RayCloud no_rays;
+  no_rays.set_schema(source.info().extras);
+  Sources sources = each_alone(source);
+  if (no_map) {
+    CloudInfo info = source.info();
+    info.ray_count = 0;
+    sources.insert(sources.begin(), std::make_unique<MemorySource>(no_rays, info));
   }
-  Sources sources;
-  std::vector<RaySource*> clouds;
-  for (std::size_t i = 0; i < source.cloud_count(); ++i) {
-    sources.push_back(source.alone(i));
-    clouds.push_back(sources.back().get());
-  }
-  OutputPrecision precision(outputs.size());
-  MergeCounts counts;
-  const auto write_once = [&] {
-    std::vector<std::unique_ptr<RaySink>> sinks;
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-      CloudInfo info = precision.widened(i, source.info());
-      info.history.push_back(session.history());
-      sinks.push_back(precision.watch(i, create_ray_cloud(outputs[i], info, {.flush_to_disk = in_place})));
-    }
-    counts = merge_clouds(session.context(), clouds, *sinks.front(), in_place ? nullptr : sinks.back().get(),
-                          rule);
-    for (const auto& sink : sinks)
-      sink->finish();
-  };
-  while (true) {
-    try {
-      write_once();
-      break;
-    } catch (const PrecisionLoss&) {
-      for (RaySource* cloud : clouds)
-        cloud->rewind();  // each time one more of the outputs is double
-    }
-  }
-  tell_counts(counts, session);
-  session.summary({.rays_in = counts.stream.rays_in, .rays_out = counts.combined, .files = outputs});
+  const ThreeWay parts(session.context(), {sources[0].get(), sources[1].get(), sources[2].get()},
+                       columns_of(files, no_map));
+  const auto kept = parts.kept(), added1 = parts.added(0), added2 = parts.added(1);
+  const MergedFiles outputs = merged_files(match, files, rule.merge != CloudMerge::all);
+  CloudInfo info = source.info();
+  info.extras = kept->info().extras;
+  const MergeCounts merged = write_merged(
+      session, {.info = info, .kept = kept.get(), .clouds = {added1.get(), added2.get()}}, rule, outputs);
+  const ThreeWay::Counts& counts = parts.counts();
+  session.note(number_of_rays(counts.kept) + " as before, " + cli::grouped(counts.base - counts.kept) +
+               " removed, " + cli::grouped(counts.added[0]) + " and " + cli::grouped(counts.added[1]) +
+               " added" +
+               (merged.repeated > 0 ? ", " + cli::grouped(merged.repeated) + " of these by both" : ""));
+  if (rule.merge != CloudMerge::all) session.note(number_of_rays(merged.differences) + " gave way");
+  session.summary(
+      {.rays_in = counts.rays, .rays_out = counts.kept + merged.combined, .files = outputs.names});
 }
 
 }  // namespace ray::tools

@@ -6,7 +6,6 @@
 #include <raycloud/filter/combine.h>
 #include <raycloud/volume/merge_clouds.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,5 +24,11 @@ void tell_of(const CombinedSource& source, cli::Session& session);
 /// CLOUD1_differences.
 void merge_files(const cli::Match& match, cli::Session& session, const std::vector<std::string>& files,
                  const MergeRule& rule);
+
+/// Merges two branches of a map: the files are the map and the two. A map without a byte is one without rays,
+/// which is how git tells that the branches have none in common. Writes as above, but no differences for
+/// `all`.
+void merge_branches(const cli::Match& match, cli::Session& session, const std::vector<std::string>& files,
+                    const MergeRule& rule);
 
 }  // namespace ray::tools

@@ -29,6 +29,11 @@ another cloud holds, one of the two gives way:
 What gave way is in the second file. A ray that several clouds have comes once. The clouds must lie on each
 other to better than 5 cm; what is 5 cm apart counts as changed.
 
+With a BASE, the map from which both clouds were made, rays that both still have stay, rays that one of
+them removed are gone, and what the two added is put together. A ray of which anything was changed, its
+colour too, is a new one; where both changed it in different ways, both stay. `raycloud git install` makes
+git merge maps so.
+
 The clouds may have different columns: the result has the columns of all, and where a cloud lacks one it
 is filled with 0, or NaN for real numbers. It is in double precision if one of the clouds is.
 
@@ -42,7 +47,16 @@ starts to rounding. The column `clipped` goes away with the last piece.)",
                 .words = {choice("KIND", {"min", "max", "oldest", "newest", "order"}), clouds(),
                           count("N", "ray")},
                 .help = "one map; N rays of another cloud see through what has changed",
-                .example = "raycombine newest monday.ply tuesday.ply 10 rays"}},
+                .example = "raycombine newest monday.ply tuesday.ply 10 rays"},
+               {.name = "three",
+                .words = {cloud("BASE"), literal("all"), cloud("CLOUD1"), cloud("CLOUD2")},
+                .help = "what two people have made of one map",
+                .example = "raycombine map.ply all mine.ply yours.ply"},
+               {.name = "three by rays",
+                .words = {cloud("BASE"), choice("KIND", {"min", "max", "oldest", "newest", "order"}),
+                          cloud("CLOUD1"), cloud("CLOUD2"), count("N", "ray")},
+                .help = "the same; what they have added is merged as above",
+                .example = "raycombine map.ply newest mine.ply yours.ply 10 rays"}},
     .options = {output_option("CLOUD1_combined.ply"),
                 {.name = "join",
                  .help = "make whole rays of the pieces that raysplit cut",
@@ -52,7 +66,7 @@ starts to rounding. The column `clipped` goes away with the last piece.)",
                  .help = "the plain rule of the paper: every ray that crosses a place counts, and each place "
                          "by itself",
                  .advanced = true,
-                 .usages = {"merge"}}},
+                 .usages = {"merge", "three by rays"}}},
     .writes =
         "CLOUD1_combined.ply, after the name of the first cloud; merging also CLOUD1_differences.ply, unless "
         "the result takes the place of one of the clouds",
@@ -115,8 +129,24 @@ void merge(const Match& match, Session& session) {
                            .paper = match.has("--paper")});
 }
 
+void merge_three(const Match& match, Session& session) {
+  const bool by_rays = match.usage() != "three";
+  ray::MergeRule rule{.merge = ray::CloudMerge::all};
+  if (by_rays)
+    rule = {.merge = ray::tools::merge_of(match.text("KIND")),
+            .rays = static_cast<double>(match.integer("N")),
+            .paper = match.has("--paper")};
+  ray::tools::merge_branches(match, session, {match.text("BASE"), match.text("CLOUD1"), match.text("CLOUD2")},
+                             rule);
+}
+
 void run(const Match& match, Session& session) {
-  match.usage() == "merge" ? merge(match, session) : combine(match, session);
+  if (match.usage() == "all")
+    combine(match, session);
+  else if (match.usage() == "merge")
+    merge(match, session);
+  else
+    merge_three(match, session);
 }
 
 }  // namespace

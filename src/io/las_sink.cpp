@@ -126,7 +126,7 @@ class LasSink final : public RaySink {
         spool_(path, options),
         info_(info),
         content_(content),
-        compressed_(is_laz(path)) {}
+        compressed_(options.format.empty() ? is_laz(path) : options.format == ".laz") {}
 
   void encode(const RayCloud& rays, RawChunk& raw) const override;
   void write(const RawChunk& raw) override;

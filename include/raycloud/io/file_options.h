@@ -2,6 +2,7 @@
 /// What every reader and writer of this room takes.
 
 #include <cstddef>
+#include <string>
 
 namespace ray {
 
@@ -20,6 +21,8 @@ struct WriteOptions {
   /// Open the file anew for each write, so that there is no limit to how many are being written at once: for
   /// commands that write thousands. A write costs some microseconds more: make it a large one.
   bool close_between_writes = false;
+  /// Where the extension of the file says nothing: the format is that of this one, `.ply`, `.las` or `.laz`.
+  std::string format = {};
 };
 
 }  // namespace ray

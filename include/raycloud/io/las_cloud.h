@@ -45,7 +45,8 @@ namespace ray {
 [[nodiscard]] std::unique_ptr<RaySource> open_las(const std::filesystem::path& path,
                                                   const ReadOptions& options = {});
 
-/// Stores rays; compressed if the extension of `path` is `.laz` in either case.
+/// Stores rays; compressed if the extension of `path` is `.laz` in either case, or if WriteOptions::format
+/// is.
 ///
 /// Scale and offset of each axis are chosen when all rays are known, from a temporary file beside the target
 /// that has no name (61 bytes a ray plus extras): the scale is the source's own step if all coordinates lie
