@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/layout.h"
 #include "cli/suggest.h"
+#include "git_driver.h"
 
 #include <unistd.h>
 
@@ -20,21 +21,47 @@ const Command kCommand{
         R"(`raycloud decimate` runs `raydecimate` with the words that follow, and so for every command.
 Commands are looked for beside this program and then in `PATH`.
 
+`raycloud git install` makes git merge `.ply` files with `raycombine BASE all CLOUD1 CLOUD2`: it sets the merge
+driver `plymerge` in your configuration of git and the attribute `*.ply merge=plymerge`. Doing it again changes
+nothing; `raycloud git uninstall` takes both out.
+
 The options below may follow the words of every command.)",
     .usages = {{.name = "list", .words = {}, .help = "lists the commands", .example = "raycloud"},
                {.name = "help",
                 .words = {literal("help"), text("COMMAND")},
                 .help = "shows how to use a command",
                 .example = "raycloud help decimate"},
+               {.name = "git",
+                .words = {literal("git"), choice("WHAT", {"install", "uninstall"})},
+                .help = "makes git merge ray clouds, or no more",
+                .example = "raycloud git install"},
                {.name = "run",
                 .words = {text("COMMAND"), optional(inputs("WORD"))},
                 .help = "runs a command",
                 .example = "raycloud decimate cloud.ply 4 cm"}},
-    .see_also = {"rayimport", "rayinfo"}};
+    .options = {{.name = "repository",
+                 .help = "for the repository of this folder alone, not for all of this user",
+                 .usages = {"git"}}},
+    .see_also = {"rayimport", "rayinfo", "raycombine"}};
 
 constexpr std::string_view kPrefix = "ray";
 
+void set_up_git(const Match& match, Session& session) {
+  using namespace ray::tools;
+  const bool alone = match.has("--repository");
+  const GitScope scope = alone ? GitScope::repository : GitScope::user;
+  const bool install = match.text("WHAT") == "install";
+  const std::filesystem::path file = install ? install_git_driver(scope) : uninstall_git_driver(scope);
+  session.note(std::string("git ") +
+               (install ? "merges .ply files with raycombine now" : "merges .ply files as before") +
+               (alone ? " in this repository" : "") + " (attributes: " + file.string() + ")");
+}
+
 void run(const Match& match, Session& session) {
+  if (match.usage() == "git") {
+    set_up_git(match, session);
+    return;
+  }
   std::vector<std::string> names;
   std::vector<std::pair<std::string, std::string>> rows;
   for (const ListedCommand& listed : kCommands) {
@@ -102,7 +129,7 @@ int main(int argc, char** argv) {
     become(words[2], asked);
     return 1;
   }
-  if (words[0].starts_with('-')) return ray::cli::main(kCommand, run, argc, argv);
+  if (words[0].starts_with('-') || words[0] == "git") return ray::cli::main(kCommand, run, argc, argv);
   become(words[0], rest);
   return ray::cli::main(kCommand, run, 2, argv);
 }

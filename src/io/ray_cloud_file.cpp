@@ -38,7 +38,7 @@ std::unique_ptr<RaySource> open_ray_cloud(const std::filesystem::path& path, con
   const std::string extension = cloud_format(path);
   if (extension == ".ply") return open_ply(path, options);
   if (extension == ".las" || extension == ".laz") return open_las(path, options);
-  const InputFile there(path);  // says what is wrong if it is not
+  if (path.extension().empty()) const InputFile there(path);  // says what is wrong if it is not
   throw Error(ErrorCode::wrong_content,
               path.string() + ": not a ray cloud (.ply, .las or .laz): make one with rayimport");
 }

@@ -25,6 +25,29 @@ TEST(RayCloudFile, TheExtensionDecidesInEitherCase) {
   }
 }
 
+TEST(RayCloudFile, WhereTheNameTellsNothingTheContentDoes) {
+  const Scratch scratch;
+  const RayCloud cloud = random_cloud(3, {.float_coordinates = true});
+  for (const char* format : {".ply", ".las", ".laz"}) {
+    for (const char* name : {".merge_file_a1B2c3", "map.4", "map"}) {
+      const auto path = scratch.path(name);
+      write_all(*create_ray_cloud(path, {}, {.format = format}), cloud);
+      EXPECT_EQ(cloud_format(path), format) << name;
+      EXPECT_EQ(read_rest(*open_ray_cloud(path)).rays.times, cloud.times) << format << name;
+    }
+    // A name that tells is believed.
+    const std::string other = format == std::string(".las") ? ".laz" : ".las";
+    const auto path = scratch.path("named" + other);
+    write_all(*create_ray_cloud(path, {}, {.format = format}), cloud);
+    std::filesystem::rename(path, scratch.path("renamed"));
+    EXPECT_EQ(cloud_format(scratch.path("renamed")), other);
+  }
+  for (const char* content : {"", "p", "plyers", "LASF", "x,y,z"}) {
+    write_file(scratch.path("text"), content);
+    EXPECT_EQ(cloud_format(scratch.path("text")), "") << content;
+  }
+}
+
 TEST(PointFile, TheExtensionDecidesInEitherCase) {
   const Scratch scratch;
   const RayCloud cloud = random_cloud(3, {.float_coordinates = true});
