@@ -1,13 +1,17 @@
 // The walk of rays through the ellipsoids of their cloud, by itself.
 //   bench_free_space CLOUD.ply [THREADS]
-// Prints one line: what making the ellipsoids takes, counting ends in them, and walking all rays.
+// Prints a line on what making the ellipsoids takes, counting ends in them, and walking all rays, and one on
+// merging the cloud's two halves, of every other ray.
 
+#include <raycloud/core/memory_stream.h>
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/stream.h>
 #include <raycloud/io/ray_cloud_file.h>
 #include <raycloud/spatial/surfel.h>
 #include <raycloud/volume/free_space.h>
+#include <raycloud/volume/merge_clouds.h>
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -53,6 +57,35 @@ void each_piece(const ray::Context& context, const ray::RayCloud& rays, const Wo
   });
 }
 
+/// Keeps nothing.
+class NoSink final : public ray::RaySink {
+ public:
+  void encode(const ray::RayCloud& /*rays*/, ray::RawChunk& /*raw*/) const override {}
+  void write(const ray::RawChunk& /*raw*/) override {}
+  void finish() override {}
+};
+
+void print_merge(const ray::Context& context, const ray::RayCloud& rays) {
+  std::array<ray::RayCloud, 2> halves;
+  for (std::size_t half = 0; half < halves.size(); ++half) {
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = half; i < rays.size(); i += halves.size())
+      rows.push_back(static_cast<std::uint32_t>(i));
+    halves[half].assign_rows(rays, rows);
+  }
+  ray::MemorySource first(halves[0]), second(halves[1]);
+  const std::array<ray::RaySource*, 2> clouds{&first, &second};
+  NoSink combined, differences;
+  const Instant begun;
+  merge_clouds(context, clouds, combined, &differences, {.merge = ray::CloudMerge::min});
+  const Instant merged;
+  const auto count = static_cast<double>(rays.size());
+  const double wall = merged.wall - begun.wall, processor = merged.processor - begun.processor;
+  std::printf(
+      "Merge by min, %.2f M rays in two clouds: %.2f s (%.2f µs of one core a ray), %.2f M rays/s (bar 0.5)\n",
+      count / 1e6, wall, 1e6 * processor / count, count / wall / 1e6);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,5 +120,6 @@ int main(int argc, char** argv) {
   std::printf(" walk");
   spent(counted, walked);
   std::printf(" %.2f M rays/s (bar 2)\n", count / (walked.wall - counted.wall) / 1e6);
+  print_merge(context, rays);
   return 0;
 }

@@ -52,14 +52,17 @@ struct ToMerge {
 struct MergedFiles {
   std::vector<std::filesystem::path> names;
   bool in_place = false;
-  std::string format;  ///< where the names do not tell
+  std::string format;  ///< in place, that of the file
 };
 
 MergedFiles merged_files(const cli::Match& match, const std::vector<std::string>& inputs, bool differences) {
   const std::filesystem::path& input = inputs.front();
-  MergedFiles files{{cli::main_output(match, input, "_combined")}, false, cloud_format(inputs.back())};
-  for (const std::string& file : inputs)
-    files.in_place = files.in_place || same_file(file, files.names.front());
+  MergedFiles files{{cli::main_output(match, input, "_combined")}};
+  for (const std::string& file : inputs) {
+    if (!same_file(file, files.names.front())) continue;
+    files.in_place = true;
+    files.format = cloud_format(file);
+  }
   if (differences && !files.in_place)
     files.names.push_back(
         cli::output_name(match.has("--output") ? files.names.front() : input, "_differences"));

@@ -68,11 +68,11 @@ starts to rounding. The column `clipped` goes away with the last piece.)",
                  .advanced = true,
                  .usages = {"merge", "three by rays"}}},
     .writes =
-        "CLOUD1_combined.ply, after the name of the first cloud; merging also CLOUD1_differences.ply, unless "
-        "the result takes the place of one of the clouds",
+        "CLOUD1_combined.ply, after the name of the first file; merging by rays also "
+        "CLOUD1_differences.ply, unless the result takes the place of one of the clouds",
     .memory =
         "Less than 200 MB for any number of clouds of any size. `--join` takes 200 bytes for each piece "
-        "besides. Merging takes up to 130 bytes a ray, whatever --memory allows.",
+        "besides. Merging takes up to 130 bytes a ray, with BASE all 50, whatever --memory allows.",
     .see_also = {"raysplit", "raytransients", "rayrestore"}};
 
 std::string number_of(std::uint64_t count, const std::string& noun) {

@@ -34,8 +34,8 @@ raycombine -q .merge_file_O all .merge_file_A .merge_file_B -o .merge_file_A
 raycombine -q .merge_file_O newest .merge_file_A .merge_file_B 10 rays -o .merge_file_B
 ls -A
 cmp <(rows .merge_file_A) <(rows ../base_combined.ply)
-: >.merge_file_O
-raycombine .merge_file_O all ../mine.ply ../mine.ply -o .merge_file_A | said
+: >.merge_file_O && cp ../mine.ply .merge_file_A && cp ../mine.ply .merge_file_B
+raycombine .merge_file_O all .merge_file_A .merge_file_B -o .merge_file_A | said
 cmp <(rows .merge_file_A) <(rows ../mine.ply)
 raycombine -q ../mine.ply -o laz.laz && mv laz.laz .laz_file
 raycombine -q .laz_file all .laz_file .laz_file -o .laz_file
@@ -46,6 +46,7 @@ echo no cloud >text
 unchanged 1 raycombine text all .merge_file_A .merge_file_B 2>>../err
 unchanged 1 raycombine .merge_file_A all .merge_file_O .merge_file_B 2>>../err
 unchanged 1 raycombine .merge_file_A all .merge_file_A missing 2>>../err
+unchanged 2 raycombine .merge_file_A all .merge_file_A .merge_file_B -o out 2>/dev/null
 unchanged 2 raycombine .merge_file_A all .merge_file_A 2>/dev/null
 unchanged 2 raycombine .merge_file_A min .merge_file_A .merge_file_B 2>/dev/null
 unchanged 2 raycombine .merge_file_A all .merge_file_A .merge_file_B 10 rays 2>/dev/null
