@@ -126,6 +126,8 @@ raycombine $1 $1
 raycombine $1 --join
 raycombine min $1 $1 10 rays
 raycombine newest $1 $1 10 rays --paper
+raydiff $1 $1
+raydiff $1 $1 --json --individual
 raycolour $1 time
 raycolour $1 alpha 0.5
 raycolour $1 normal --lit

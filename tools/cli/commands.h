@@ -28,6 +28,7 @@ inline constexpr std::array kCommands{
     ListedCommand{"raysmooth", "move end points onto the surface they are samples of"},
     ListedCommand{"raysplit", "split a ray cloud in two, or into cells"},
     ListedCommand{"raycombine", "put ray clouds together"},
+    ListedCommand{"raydiff", "what came and what went between two ray clouds"},
     ListedCommand{"rayrender", "picture a ray cloud"},
 };
 
