@@ -9,178 +9,181 @@
 namespace ray {
 namespace {
 
-constexpr std::int64_t kBrickSide = 8;         // cubes of a brick
+constexpr double kBrickWidth = 20.0;           // radii
 constexpr std::int64_t kMostBricks = 1 << 18;  // of an outlier's ray, the beginning will do
+constexpr std::size_t kFew = 16;               // points of a cell that need no groups
+constexpr std::size_t kGroup = 8;              // points, at most
+constexpr double kRounded = 1.0 + 1e-9;
 
-struct CubeRange {
-  std::int64_t low, high;
-};
-
-/// Calls `visit(cube, in, out)` for the cubes along start + t · direction with t from `from` to `to`, and
-/// between which t they are crossed; only those within the ranges, and `most` at most.
-template <class Visit>
-void each_cube(const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double from, double to,
-               double width, const std::array<CubeRange, 3>& ranges, std::int64_t most, const Visit& visit) {
-  std::array<std::int64_t, 3> cube{}, step{};
-  std::array<double, 3> next{}, each{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    const auto [low, high] = ranges[axis];
-    const double at = std::floor((start[a] + from * direction[a]) / width);
-    cube[axis] =
-        static_cast<std::int64_t>(std::clamp(at, static_cast<double>(low), static_cast<double>(high)));
-    if (direction[a] == 0.0) {
-      next[axis] = each[axis] = std::numeric_limits<double>::infinity();
-      continue;
-    }
-    step[axis] = direction[a] > 0.0 ? 1 : -1;
-    each[axis] = width / std::abs(direction[a]);
-    next[axis] =
-        (static_cast<double>(cube[axis] + (step[axis] > 0 ? 1 : 0)) * width - start[a]) / direction[a];
-  }
-  for (double in = from; most > 0; --most) {
-    const std::size_t axis = next[0] <= next[1] && next[0] <= next[2] ? 0 : next[1] <= next[2] ? 1 : 2;
-    const double out = std::clamp(next[axis], in, to);
-    visit(VoxelIndex{cube[0], cube[1], cube[2]}, in, out);
-    if (next[axis] >= to) return;
-    in = out;
-    cube[axis] += step[axis];
-    next[axis] += each[axis];
-    if (cube[axis] < ranges[axis].low || cube[axis] > ranges[axis].high) return;
-  }
+std::int64_t brick_at(double value, double width) {
+  constexpr double kFar = 0x1p58;
+  return static_cast<std::int64_t>(std::clamp(std::floor(value / width), -kFar, kFar));
 }
 
-std::int64_t brick_of(std::int64_t cube) {
-  return cube >> 3;
+/// Every third bit, for eight parts of a brick along an axis: near numbers are near in space.
+std::uint32_t spread_bits(double part) {
+  const auto number = static_cast<std::uint32_t>(std::clamp(8.0 * part, 0.0, 7.0));
+  return (number & 1) | (number & 2) << 2 | (number & 4) << 4;
 }
-std::size_t in_brick(std::int64_t cube) {
-  return static_cast<std::size_t>(cube & (kBrickSide - 1));
-}
-std::uint64_t bit_of(const VoxelIndex& cube) {
-  return std::uint64_t{1} << (in_brick(cube.x) + kBrickSide * in_brick(cube.y));
+
+std::uint32_t place_in_brick(const Eigen::Vector3d& point, double width) {
+  const Eigen::Array3d at = point.array() / width;
+  const Eigen::Array3d part = at - at.floor();
+  return spread_bits(part.x()) | spread_bits(part.y()) << 1 | spread_bits(part.z()) << 2;
 }
 
 }  // namespace
 
-/// The cubes that a ball touches, and their bricks, which are made where there are none.
+/// The cells of the bricks that the box of a ball touches.
 template <class Visit>
-void SeenThrough::each_cube_of_ball(const Eigen::Vector3d& point, const Visit& visit) {
-  const double reach = radius_ * (1.0 + 1e-9);
-  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(reach);
-  const VoxelIndex low = voxel_index(point - corner, {width_});
-  const VoxelIndex high = voxel_index(point + corner, {width_});
-  const auto apart = [&](double at, std::int64_t cube) {
-    const double from = static_cast<double>(cube) * width_;
-    return std::max({from - at, at - (from + width_), 0.0});
-  };
-  VoxelIndex cube;
-  for (cube.z = low.z; cube.z <= high.z; ++cube.z)
-    for (cube.y = low.y; cube.y <= high.y; ++cube.y)
-      for (cube.x = low.x; cube.x <= high.x; ++cube.x) {
-        const Eigen::Vector3d away(apart(point.x(), cube.x), apart(point.y(), cube.y),
-                                   apart(point.z(), cube.z));
-        if (away.squaredNorm() > reach * reach) continue;
-        const VoxelPlace place = voxel_place({brick_of(cube.x), brick_of(cube.y), brick_of(cube.z)});
-        const auto added = numbers_.block(place.block).add(place.key);
-        if (added.is_new) {
-          bricks_.emplace_back();
-          numbers_of_bricks_.push_back({brick_of(cube.x), brick_of(cube.y), brick_of(cube.z)});
-          *added.value = static_cast<std::uint32_t>(bricks_.size());
-        }
-        visit(Cube{*added.value - 1, in_brick(cube.z), bit_of(cube)});
-      }
-}
-
-std::uint32_t SeenThrough::list_of(const Cube& cube) const {
-  const Brick& brick = bricks_[cube.brick];
-  return brick.first[cube.layer] +
-         static_cast<std::uint32_t>(std::popcount(brick.cubes[cube.layer] & (cube.bit - 1)));
-}
-
-SeenThrough::SeenThrough(std::vector<Eigen::Vector3d> points, double radius)
-    : points_(std::move(points)), passes_(points_.size()), radius_(radius), width_(2.0 * radius) {
-  for (const Eigen::Vector3d& point : points_)
-    each_cube_of_ball(point, [&](const Cube& cube) { bricks_[cube.brick].cubes[cube.layer] |= cube.bit; });
-  mark_bricks();
-  std::uint32_t lists = 0;
-  for (Brick& brick : bricks_)
-    for (std::size_t layer = 0; layer < brick.cubes.size(); ++layer) {
-      brick.first[layer] = lists;
-      lists += static_cast<std::uint32_t>(std::popcount(brick.cubes[layer]));
-    }
-  // The length of each list, then where it ends; filling it from behind leaves where it begins.
-  list_begins_.resize(lists + 1);
-  for (const Eigen::Vector3d& point : points_)
-    each_cube_of_ball(point, [&](const Cube& cube) { ++list_begins_[list_of(cube)]; });
-  std::uint32_t sum = 0;
-  for (std::uint32_t& begin : list_begins_)
-    begin = sum += begin;
-  listed_.resize(sum);
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    each_cube_of_ball(points_[i], [&](const Cube& cube) {
-      listed_[--list_begins_[list_of(cube)]] = static_cast<std::uint32_t>(i);
-    });
-}
-
-std::uint64_t SeenThrough::hash_of(const VoxelIndex& number) {
-  std::uint64_t hash = static_cast<std::uint64_t>(number.x) * 0x9e3779b97f4a7c15 +
-                       static_cast<std::uint64_t>(number.y) * 0xc2b2ae3d27d4eb4f +
-                       static_cast<std::uint64_t>(number.z) * 0x165667b19e3779f9;
-  hash ^= hash >> 32;
-  hash *= 0xd6e8feb86659fd93;
-  return hash >> 24;
-}
-
-/// Sixteen bits for each brick, so that most others are known to be empty by one look.
-void SeenThrough::mark_bricks() {
-  maybe_.resize(std::bit_ceil(bricks_.size() / 4 + 1));
-  for (const VoxelIndex& number : numbers_of_bricks_) {
-    const std::uint64_t hash = hash_of(number) & (64 * maybe_.size() - 1);
-    maybe_[hash / 64] |= std::uint64_t{1} << (hash % 64);
+void SeenThrough::each_cell_of_ball(const Eigen::Vector3d& point, const Visit& visit) const {
+  const double reach = radius_ * kRounded;
+  std::array<std::int64_t, 3> low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = point[static_cast<Eigen::Index>(axis)];
+    low[axis] = brick_at(at - reach, width_);
+    high[axis] = brick_at(at + reach, width_);
   }
-  numbers_of_bricks_ = std::vector<VoxelIndex>();
+  for (std::int64_t z = low[2]; z <= high[2]; ++z)
+    for (std::int64_t y = low[1]; y <= high[1]; ++y)
+      for (std::int64_t x = low[0]; x <= high[0]; ++x)
+        visit(cells_.along(0, x) | cells_.along(1, y) | cells_.along(2, z));
+}
+
+SeenThrough::SeenThrough(const Points& points, double radius)
+    : passes_(points.size()), radius_(radius), width_(kBrickWidth * radius) {
+  if (points.empty()) return;
+  choose_cells(points);
+  list_points(points);
+}
+
+/// As many as hold all bricks beside each other, but not very many more than there are points.
+void SeenThrough::choose_cells(const Points& points) {
+  constexpr int kFewest = 2;  // bits: a ball may touch two bricks that are beside each other
+  constexpr std::size_t kMany = 32;
+  std::array<int, 3> bits{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const auto [low, high] =
+        std::minmax_element(points.begin(), points.end(),
+                            [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p[a] < q[a]; });
+    const std::int64_t extent = brick_at((*high)[a], width_) - brick_at((*low)[a], width_) + 3;
+    bits[axis] = std::max<int>(std::bit_width(static_cast<std::uint64_t>(extent)), kFewest);
+  }
+  const int most = std::clamp<int>(std::bit_width(kMany * points.size()), 3 * kFewest, 31);
+  while (bits[0] + bits[1] + bits[2] > most)
+    --*std::max_element(bits.begin(), bits.end());
+  std::uint32_t shift = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cells_.shift[axis] = shift;
+    cells_.mask[axis] = ((std::uint32_t{1} << bits[axis]) - 1) << shift;
+    shift += static_cast<std::uint32_t>(bits[axis]);
+  }
+}
+
+void SeenThrough::list_points(const Points& points) {
+  occupied_.resize((cells_.count() + 63) / 64);
+  for (const Eigen::Vector3d& point : points)
+    each_cell_of_ball(point,
+                      [&](std::size_t cell) { occupied_[cell / 64].cells |= std::uint64_t{1} << cell % 64; });
+  std::uint32_t count = 0;
+  for (Occupied& occupied : occupied_) {
+    occupied.before = count;
+    count += static_cast<std::uint32_t>(std::popcount(occupied.cells));
+  }
+  // The length of the list of each cell, then where it ends; filling it from behind leaves where it begins.
+  std::vector<std::uint32_t> begins(count + 1);
+  for (const Eigen::Vector3d& point : points)
+    each_cell_of_ball(point, [&](std::size_t cell) { ++begins[rank_of(cell)]; });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& begin : begins)
+    begin = sum += begin;
+  std::vector<Listed> listed(sum);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    each_cell_of_ball(points[i], [&](std::size_t cell) {
+      listed[--begins[rank_of(cell)]] = {place_in_brick(points[i], width_), static_cast<std::uint32_t>(i)};
+    });
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    first_node_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+    add_nodes(points, {listed.data() + begins[cell], listed.data() + begins[cell + 1]});
+  }
+  first_node_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+}
+
+/// Of the points of a cell.
+void SeenThrough::add_nodes(const Points& points, std::span<Listed> listed) {
+  const bool few = listed.size() <= kFew;
+  if (!few) std::sort(listed.begin(), listed.end());
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    if (!few && i % kGroup == 0) add_group(points, listed.subspan(i, std::min(kGroup, listed.size() - i)));
+    const auto next = static_cast<std::uint32_t>(nodes_.size() + 1);
+    nodes_.push_back({points[listed[i].point], radius_ * radius_, listed[i].point, next});
+  }
+}
+
+void SeenThrough::add_group(const Points& points, std::span<const Listed> listed) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Listed& one : listed)
+    middle += points[one.point] / static_cast<double>(listed.size());
+  double reach = 0.0;
+  for (const Listed& one : listed)
+    reach = std::max(reach, (points[one.point] - middle).norm() + radius_);
+  const std::size_t end = nodes_.size() + 1 + listed.size();
+  constexpr double kNotLess = 1.001;  // whatever is rounded
+  nodes_.push_back({middle, kNotLess * reach * reach, kIsGroup, static_cast<std::uint32_t>(end)});
 }
 
 void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, bool bounded) {
-  if (points_.empty()) return;
+  if (passes_.empty()) return;
   const double length = (end - start).norm();
   const double to = bounded ? length - radius_ : length;
   if (!(to > 0.0)) return;
-  const Eigen::Vector3d direction = (end - start) / length;
-  constexpr std::int64_t kFar = std::int64_t{1} << 58;
-  const CubeRange all{-kFar, kFar};
-  each_cube(start, direction, 0.0, to, kBrickSide * width_, {all, all, all}, kMostBricks,
-            [&](const VoxelIndex& number, double in, double out) {
-              visit_brick(number, start, direction, in, out);
-            });
+  const Line line{start, (end - start) / length};
+  std::array<std::uint32_t, 3> cell{}, step{};
+  std::array<double, 3> next{}, each{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const double direction = line.direction[a];
+    const std::int64_t brick = brick_at(start[a], width_);
+    cell[axis] = cells_.along(axis, brick);
+    const bool up = direction > 0.0;
+    step[axis] = cells_.along(axis, up ? 1 : -1);
+    each[axis] = width_ / std::abs(direction);
+    next[axis] = direction == 0.0
+                     ? std::numeric_limits<double>::infinity()
+                     : (static_cast<double>(brick + (up ? 1 : 0)) * width_ - start[a]) / direction;
+  }
+  double in = 0.0;
+  for (std::int64_t bricks = 0; bricks < kMostBricks; ++bricks) {
+    std::size_t axis = next[1] < next[0] ? 1 : 0;
+    axis = next[2] < next[axis] ? 2 : axis;
+    const double out = std::clamp(next[axis], in, to);
+    const std::size_t at = cell[0] | cell[1] | cell[2];
+    if ((occupied_[at / 64].cells >> at % 64 & 1) != 0) visit(at, line, in, out);
+    if (next[axis] >= to) return;
+    in = out;
+    cell[axis] = (cell[axis] + step[axis]) & cells_.mask[axis];
+    next[axis] += each[axis];
+  }
 }
 
-void SeenThrough::visit_brick(const VoxelIndex& number, const Eigen::Vector3d& start,
-                              const Eigen::Vector3d& direction, double in, double out) {
-  if (!may_have(number)) return;
-  const VoxelPlace place = voxel_place(number);
-  const KeyTable<std::uint32_t>* block = numbers_.find_block(place.block);
-  const std::uint32_t* found = block == nullptr ? nullptr : block->find(place.key);
-  if (found == nullptr) return;
-  const Brick& brick = bricks_[*found - 1];
-  const auto range = [](std::int64_t of_brick) {
-    return CubeRange{kBrickSide * of_brick, kBrickSide * of_brick + kBrickSide - 1};
-  };
-  each_cube(start, direction, in, out, width_, {range(number.x), range(number.y), range(number.z)},
-            4 * kBrickSide, [&](const VoxelIndex& cube, double enters, double leaves) {
-              const std::size_t layer = in_brick(cube.z);
-              const std::uint64_t bit = bit_of(cube);
-              if ((brick.cubes[layer] & bit) == 0) return;
-              const std::uint32_t list = list_of({*found - 1, layer, bit});
-              for (std::uint32_t i = list_begins_[list]; i < list_begins_[list + 1]; ++i) {
-                const std::uint32_t point = listed_[i];
-                const Eigen::Vector3d offset = points_[point] - start;
-                const double nearest = offset.dot(direction);  // is in one cube, so that each ray counts once
-                if (nearest < enters || nearest >= leaves) continue;
-                if (offset.squaredNorm() - nearest * nearest < radius_ * radius_)
-                  std::atomic_ref(passes_[point]).fetch_add(1, std::memory_order_relaxed);
-              }
-            });
+/// Counts for the points of a cell to which the line is nearest on its way through the brick, so that each
+/// ray counts once.
+void SeenThrough::visit(std::size_t cell, const Line& line, double in, double out) {
+  const std::size_t rank = rank_of(cell);
+  const std::uint32_t end = first_node_[rank + 1];
+  for (std::uint32_t i = first_node_[rank]; i < end; ++i) {
+    const Node& node = nodes_[i];
+    const bool is_group = node.point == kIsGroup;
+    const Eigen::Vector3d offset = node.middle - line.start;
+    const double nearest = offset.dot(line.direction);
+    if (offset.squaredNorm() - nearest * nearest < node.radius2) {
+      if (!is_group && nearest >= in && nearest < out)
+        std::atomic_ref(passes_[node.point]).fetch_add(1, std::memory_order_relaxed);
+    } else if (is_group) {
+      i = node.end - 1;
+    }
+  }
 }
 
 }  // namespace ray

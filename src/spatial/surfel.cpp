@@ -72,9 +72,8 @@ Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neigh
 
 bool any_from_behind(const PointTree& tree, const Eigen::Vector3d& normal,
                      std::span<const Neighbour> neighbours) {
-  return std::any_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
-    const PackedDirection& d = tree.to_sensor(neighbour.place);
-    return normal.x() * d[0] + normal.y() * d[1] + normal.z() * d[2] < 0.0;
+  return !std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
+    return is_seen_from(normal, tree.to_sensor(neighbour.place));
   });
 }
 
@@ -120,18 +119,13 @@ Surfel past_ring(NeighbourSearch& search, std::size_t place, const SurfelRule& r
   return is_flat(surfel) && !is_ring(surfel, ray) ? surfel : ring;
 }
 
-Surfel nearest_surfel(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const PointTree& tree = search.tree();
-  const auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
-  Surfel surfel = surfel_of(tree, place, neighbours);
-  if (!rule.by_side) return surfel;
-  const bool flat = is_flat(surfel);
-  const bool from_behind = any_from_behind(tree, surfel.normal, neighbours);
-  if (flat ? !from_behind : all_seen_alike(tree, place, neighbours)) return surfel;
+/// Where the nearest neighbours were not all seen from one side.
+Surfel surfel_of_side(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, Surfel surfel,
+                      bool from_behind) {
   const auto of_side = [&](const Eigen::Vector3d& side) {
-    return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
+    return surfel_of(search.tree(), place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
   };
-  if (flat) return of_side(of_side(surfel.normal).normal);
+  if (is_flat(surfel)) return of_side(of_side(surfel.normal).normal);
   // Round or thick? The first way of telling sides, if it leaves a clearly flatter surface.
   const Eigen::Vector3d side = side_of_thick(search, place, rule);
   if (from_behind) surfel = of_side(surfel.normal);
@@ -152,11 +146,24 @@ Shape shape_of(const Surfel& surfel) {
           .planarity = (extents[1] - extents[0]) / extents[2]};
 }
 
+SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
+  const PointTree& tree = search.tree();
+  SurfelOf result;
+  result.nearest = search.nearest(place, rule.neighbours, rule.reach);
+  result.surfel = surfel_of(tree, place, result.nearest);
+  if (rule.by_side) {
+    const bool from_behind = any_from_behind(tree, result.surfel.normal, result.nearest);
+    if (is_flat(result.surfel) ? from_behind : !all_seen_alike(tree, place, result.nearest))
+      result = {surfel_of_side(search, place, rule, result.surfel, from_behind), {}};
+  }
+  if (!rule.past_rings) return result;
+  const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place));
+  if (is_ring(result.surfel, ray)) result = {past_ring(search, place, rule, result.surfel, ray), {}};
+  return result;
+}
+
 Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const Surfel surfel = nearest_surfel(search, place, rule);
-  if (!rule.past_rings) return surfel;
-  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place));
-  return is_ring(surfel, ray) ? past_ring(search, place, rule, surfel, ray) : surfel;
+  return surfel_and_nearest(search, place, rule).surfel;
 }
 
 }  // namespace ray

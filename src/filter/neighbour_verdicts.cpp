@@ -1,0 +1,168 @@
+#include "neighbour_verdicts.h"
+
+#include "noisy_plane.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+namespace ray {
+namespace {
+
+/// Student's quantile for a normal one (Cornish and Fisher 1938): the variances of sixteen neighbours, who
+/// share most of theirs, amount to some forty degrees of freedom.
+double for_estimated_sigma(double sigmas) {
+  constexpr double kFreedom = 40.0;
+  return sigmas + (sigmas * sigmas * sigmas + sigmas) / (4.0 * kFreedom);
+}
+
+class BlockJudge {
+ public:
+  BlockJudge(const Context& context, Block<SeenPoint>&& block, double reach, double sigmas)
+      : context_(context),
+        tree_(context, block.records),
+        block_(without_records(std::move(block))),
+        reach_(reach),
+        spacing_(reach / kReachSpacings),
+        sigmas_(for_estimated_sigma(sigmas)),
+        planes_(tree_.size()),
+        verdicts_(tree_.size()),
+        open_(tree_.size(), Open::kNothing) {}
+
+  std::vector<Verdict> take_verdicts() {
+    for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+      judge_range(search, begin, end);
+    });
+    if (!block_.own.empty()) find_planes_around();
+    for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+      for (std::size_t place = begin; place < end; ++place)
+        if (open_[place] == Open::kVerdict) judge(place, neighbours_of(search, place));
+    });
+    return std::move(verdicts_);
+  }
+
+ private:
+  /// The tree has all that they say; others need the memory.
+  static Block<SeenPoint> without_records(Block<SeenPoint>&& block) {
+    block.records = std::vector<SeenPoint>();
+    return std::move(block);
+  }
+
+  /// What is still to be found of a place.
+  enum class Open : std::uint8_t { kNothing, kVerdict, kPlane };
+
+  /// Who asks neighbours whose planes will soon be known.
+  struct Asking {
+    std::size_t place;
+    std::array<Neighbour, kSurfaceNeighbours> neighbours;
+  };
+
+  void judge_range(NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    std::vector<Asking> asking;
+    for (std::size_t place = begin; place < end; ++place) {
+      if (!block_.is_own(tree_.index(place))) continue;
+      const std::span<const Neighbour> nearest = find_plane(search, place);
+      if (is_settled(place)) continue;
+      if (may_ask(place, nearest, begin, end)) {
+        asking.push_back({place, {}});
+        std::copy(nearest.begin(), nearest.end(), asking.back().neighbours.begin());
+      } else {
+        open_[place] = Open::kVerdict;
+      }
+    }
+    for (const Asking& one : asking)
+      judge(one.place, one.neighbours);
+  }
+
+  /// Returns the nearest neighbours if the plane is theirs, else none.
+  std::span<const Neighbour> find_plane(NeighbourSearch& search, std::size_t place) {
+    const auto [surfel, nearest] = surfel_and_nearest(search, place, {kSurfaceNeighbours, reach_, true});
+    planes_[place] = noisy_plane(tree_, place, surfel);
+    return nearest;
+  }
+
+  /// Gives a verdict where there is no need to ask the neighbours. True if so.
+  bool is_settled(std::size_t place) {
+    constexpr double kThin = 6.0;  // spacings within which 16 neighbours are; on a surface it is 2.3
+    const NoisyPlane& plane = planes_[place];
+    Verdict& verdict = verdicts_[tree_.index(place)];
+    verdict.is_thin = plane.points <= kSurfaceNeighbours || plane.is_line || plane.reach > kThin * spacing_;
+    if (plane.points > kTooFew) return is_surely_inside(plane, sigmas_, kBeside * spacing_);
+    // In a cloud of a few rays nobody can tell.
+    verdict.kind = std::isfinite(reach_) ? Verdict::kNoise : Verdict::kStays;
+    return true;
+  }
+
+  /// Whether these are the neighbours that are to be asked, and all of their planes are of one range.
+  bool may_ask(std::size_t place, std::span<const Neighbour> nearest, std::size_t begin,
+               std::size_t end) const {
+    if (nearest.size() < kSurfaceNeighbours || planes_[place].normal.isZero()) return false;
+    const Eigen::Vector3d side = planes_[place].normal.cast<double>();
+    return std::all_of(nearest.begin(), nearest.end(), [&](const Neighbour& neighbour) {
+      return neighbour.place >= begin && neighbour.place < end &&
+             block_.is_own(tree_.index(neighbour.place)) &&
+             is_seen_from(side, tree_.to_sensor(neighbour.place));
+    });
+  }
+
+  std::span<const Neighbour> neighbours_of(NeighbourSearch& search, std::size_t place) const {
+    const NoisyPlane& plane = planes_[place];
+    return plane.normal.isZero()
+               ? search.nearest(place, kSurfaceNeighbours, plane.reach)
+               : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
+  }
+
+  /// Of what lies around the block, the planes of those who will be asked.
+  void find_planes_around() {
+    const auto open = [&](std::size_t place) { return std::atomic_ref(open_[place]); };
+    for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+      for (std::size_t place = begin; place < end; ++place) {
+        if (open(place).load(std::memory_order_relaxed) != Open::kVerdict ||
+            block_.has_only_own(tree_.point(place), planes_[place].reach))
+          continue;
+        for (const Neighbour& neighbour : neighbours_of(search, place))
+          if (!block_.is_own(tree_.index(neighbour.place)))
+            open(neighbour.place).store(Open::kPlane, std::memory_order_relaxed);
+      }
+    });
+    for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+      for (std::size_t place = begin; place < end; ++place)
+        if (open_[place] == Open::kPlane) find_plane(search, place);
+    });
+  }
+
+  void judge(std::size_t place, std::span<const Neighbour> neighbours) {
+    Verdict& verdict = verdicts_[tree_.index(place)];
+    if (is_outside(tree_, planes_, place, neighbours, sigmas_)) {
+      verdict.kind = Verdict::kNoise;
+      return;
+    }
+    if (planes_[place].is_flat) return;
+    const double beside2 = kBeside * kBeside * spacing_ * spacing_;
+    const auto others = std::count_if(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
+      return neighbour.distance2 <= beside2;
+    });
+    if (others > static_cast<std::ptrdiff_t>(kAlone)) return;
+    verdict.kind = Verdict::kSuspect;
+    verdict.beside = static_cast<std::uint8_t>(others);
+  }
+
+  const Context& context_;
+  PointTree tree_;
+  Block<SeenPoint> block_;
+  double reach_, spacing_;  // m
+  double sigmas_;
+  std::vector<NoisyPlane> planes_;  // by place
+  std::vector<Verdict> verdicts_;   // by index
+  std::vector<Open> open_;          // by place
+};
+
+}  // namespace
+
+std::vector<Verdict> judge_block(const Context& context, Block<SeenPoint>&& block, double reach,
+                                 double sigmas) {
+  return BlockJudge(context, std::move(block), reach, sigmas).take_verdicts();
+}
+
+}  // namespace ray
