@@ -2,7 +2,10 @@
 #include <raycloud/spatial/symmetric_eigen.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace ray {
 namespace {
@@ -101,14 +104,65 @@ bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Ne
   });
 }
 
-/// A direction to tell sides by, where the nearest neighbours are no flat surface: the normal of more of
-/// them, if that is one, as it is where the two sides of a wall are no further apart than their points; else
-/// the ray.
-Eigen::Vector3d side_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
-  const Surfel surfel = surfel_of(search.tree(), place, search.nearest(place, wide, rule.reach));
+/// More of the nearest than a surfel has, and from these, nearly always, the nearest of any side.
+class WideNeighbours {
+ public:
+  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule)
+      : search_(search), place_(place), rule_(rule) {
+    const auto found = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
+    std::copy(found.begin(), found.end(), all_.begin());
+    count_ = found.size();
+  }
+
+  [[nodiscard]] Surfel surfel() const { return surfel_of(search_.tree(), place_, {all_.data(), count_}); }
+  [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
+    return surfel_of(search_.tree(), place_, nearest_facing(side));
+  }
+
+ private:
+  static constexpr std::size_t kMost = NeighbourSearch::kMost;
+
+  std::span<const Neighbour> nearest_facing(const Eigen::Vector3d& side) {
+    const PointTree& tree = search_.tree();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      of_side_[count] = all_[i];
+      count += is_seen_from(side, tree.to_sensor(all_[i].place)) ? 1 : 0;
+    }
+    const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
+    if (count < rule_.neighbours && !are_all)
+      return search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side);
+    if (count > rule_.neighbours) {
+      const auto begin = of_side_.begin(), end = begin + static_cast<std::ptrdiff_t>(count);
+      std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(rule_.neighbours), end, nearer_first(tree));
+      count = rule_.neighbours;
+    }
+    return {of_side_.data(), count};
+  }
+
+  NeighbourSearch& search_;
+  std::size_t place_;
+  const SurfelRule& rule_;
+  std::size_t count_;
+  std::array<Neighbour, kMost> all_, of_side_;
+};
+
+/// Where the nearest neighbours are no flat surface: round or thick? If more of them are flat, as they are
+/// where the two sides of a wall are no further apart than their points, their normal says where the sides
+/// are, else the ray; but the first normal does, if that leaves a clearly flatter surface.
+Surfel surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
+                       const Surfel& nearest, bool from_behind) {
   constexpr double kFlatEnough = 0.4;  // for that many
-  return is_flat(surfel, kFlatEnough) ? surfel.normal : unpack_direction(search.tree().to_sensor(place));
+  constexpr double kClearly = 0.25;
+  WideNeighbours neighbours(search, place, rule);
+  const Surfel wide = neighbours.surfel();
+  const Eigen::Vector3d side =
+      is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(search.tree().to_sensor(place));
+  const Surfel first = from_behind ? neighbours.surfel_of_side(nearest.normal) : nearest;
+  const Surfel other = neighbours.surfel_of_side(side);
+  const bool first_is_flatter =
+      first.variances[0] * other.variances[1] < kClearly * other.variances[0] * first.variances[1];
+  return neighbours.surfel_of_side((first_is_flatter ? first : other).normal);
 }
 
 /// With more of the neighbours seen from the side of the ray, if these are a surface.
@@ -117,23 +171,6 @@ Surfel past_ring(NeighbourSearch& search, std::size_t place, const SurfelRule& r
   const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
   const Surfel surfel = surfel_of(search.tree(), place, search.nearest_facing(place, wide, rule.reach, ray));
   return is_flat(surfel) && !is_ring(surfel, ray) ? surfel : ring;
-}
-
-/// Where the nearest neighbours were not all seen from one side.
-Surfel surfel_of_side(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, Surfel surfel,
-                      bool from_behind) {
-  const auto of_side = [&](const Eigen::Vector3d& side) {
-    return surfel_of(search.tree(), place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
-  };
-  if (is_flat(surfel)) return of_side(of_side(surfel.normal).normal);
-  // Round or thick? The first way of telling sides, if it leaves a clearly flatter surface.
-  const Eigen::Vector3d side = side_of_thick(search, place, rule);
-  if (from_behind) surfel = of_side(surfel.normal);
-  const Surfel other = of_side(side);
-  constexpr double kClearly = 0.25;
-  const bool first_is_flatter =
-      surfel.variances[0] * other.variances[1] < kClearly * other.variances[0] * surfel.variances[1];
-  return of_side((first_is_flatter ? surfel : other).normal);
 }
 
 }  // namespace
@@ -152,9 +189,15 @@ SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const Su
   result.nearest = search.nearest(place, rule.neighbours, rule.reach);
   result.surfel = surfel_of(tree, place, result.nearest);
   if (rule.by_side) {
-    const bool from_behind = any_from_behind(tree, result.surfel.normal, result.nearest);
-    if (is_flat(result.surfel) ? from_behind : !all_seen_alike(tree, place, result.nearest))
-      result = {surfel_of_side(search, place, rule, result.surfel, from_behind), {}};
+    const auto of_side = [&](const Eigen::Vector3d& side) {
+      return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
+    };
+    const Surfel& nearest = result.surfel;
+    const bool from_behind = any_from_behind(tree, nearest.normal, result.nearest);
+    if (!is_flat(nearest) && !all_seen_alike(tree, place, result.nearest))
+      result = {surfel_of_thick(search, place, rule, nearest, from_behind), {}};
+    else if (is_flat(nearest) && from_behind)
+      result = {of_side(of_side(nearest.normal).normal), {}};
   }
   if (!rule.past_rings) return result;
   const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place));
