@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -10,43 +11,55 @@
 namespace ray {
 namespace {
 
-/// Offsets from the point in the middle as whole numbers of a 2^-22th of the furthest: sums of their products
-/// are exact, and so do not depend on the order of the neighbours.
+/// The moments of offsets from the point in the middle, as whole numbers of a 2^-22th of the furthest: sums of
+/// their products are exact, and so do not depend on the order of the neighbours. Two go at once.
 class ExactMoments {
  public:
-  explicit ExactMoments(double furthest2) {
+  ExactMoments(const PointTree& tree, const Eigen::Vector3d& middle, std::span<const Neighbour> neighbours,
+               double furthest2) {
     int exponent = 0;
     static_cast<void>(std::frexp(std::sqrt(furthest2), &exponent));
     scale_ = std::ldexp(1.0, 22 - exponent);
-  }
-
-  void add(const Eigen::Vector3d& offset) {
-    const double x = whole(offset.x()), y = whole(offset.y()), z = whole(offset.z());
-    sum_x_ += x, sum_y_ += y, sum_z_ += z;
-    xx_ += x * x, xy_ += x * y, xz_ += x * z;
-    yy_ += y * y, yz_ += y * z, zz_ += z * z;
+    Sums sum = Sums::Zero(), squares = Sums::Zero(), products = Sums::Zero();
+    for (std::size_t i = 0; i < neighbours.size(); i += 2) {
+      const bool has_two = i + 1 < neighbours.size();  // else what is in the middle does not change the sums
+      const Eigen::Vector3d first = tree.point(neighbours[i].place);
+      const Eigen::Vector3d second = has_two ? tree.point(neighbours[i + 1].place) : middle;
+      Sums whole;
+      whole << whole_numbers(first.x() - middle.x(), second.x() - middle.x()),
+          whole_numbers(first.y() - middle.y(), second.y() - middle.y()),
+          whole_numbers(first.z() - middle.z(), second.z() - middle.z());
+      sum += whole;
+      squares += whole * whole;
+      products.col(0) += whole.col(0) * whole.col(1);
+      products.col(1) += whole.col(0) * whole.col(2);
+      products.col(2) += whole.col(1) * whole.col(2);
+    }
+    sum_ = sum.colwise().sum();
+    squares_ = squares.colwise().sum();
+    products_ = products.colwise().sum();
   }
 
   /// Of `count` points, those that were not added being at the middle.
-  [[nodiscard]] Eigen::Vector3d mean(double count) const {
-    return Eigen::Vector3d(sum_x_, sum_y_, sum_z_) / (count * scale_);
-  }
+  [[nodiscard]] Eigen::Vector3d mean(double count) const { return sum_ / (count * scale_); }
   [[nodiscard]] Eigen::Matrix3d covariance(double count) const {
-    const Eigen::Vector3d sum(sum_x_, sum_y_, sum_z_);
     Eigen::Matrix3d products;
-    products << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
-    return (products - sum * sum.transpose() / count) / (count * scale_ * scale_);
+    products << squares_.x(), products_.x(), products_.y(), products_.x(), squares_.y(), products_.z(),
+        products_.y(), products_.z(), squares_.z();
+    return (products - sum_ * sum_.transpose() / count) / (count * scale_ * scale_);
   }
 
  private:
-  [[nodiscard]] double whole(double offset) const {
+  using Sums = Eigen::Array<double, 2, 3>;  // of every other neighbour, along the axes
+
+  [[nodiscard]] Eigen::Array2d whole_numbers(double first, double second) const {
     constexpr double kRounds = 0x1.8p52;
-    return offset * scale_ + kRounds - kRounds;
+    return Eigen::Array2d(first, second) * scale_ + kRounds - kRounds;
   }
 
-  double scale_ = 1.0;
-  double sum_x_ = 0.0, sum_y_ = 0.0, sum_z_ = 0.0;
-  double xx_ = 0.0, xy_ = 0.0, xz_ = 0.0, yy_ = 0.0, yz_ = 0.0, zz_ = 0.0;
+  double scale_;
+  Eigen::Vector3d sum_, squares_;
+  Eigen::Vector3d products_;  // xy, xz, yz
 };
 
 Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
@@ -58,9 +71,7 @@ Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neigh
   for (const Neighbour& neighbour : neighbours)
     surfel.reach2 = std::max(surfel.reach2, neighbour.distance2);
   if (surfel.reach2 > 0.0) {
-    ExactMoments moments(surfel.reach2);
-    for (const Neighbour& neighbour : neighbours)
-      moments.add(tree.point(neighbour.place) - middle);
+    const ExactMoments moments(tree, middle, neighbours, surfel.reach2);
     const double count = surfel.count;
     surfel.centroid += moments.mean(count);
     const SymmetricEigen eigen = symmetric_eigen(moments.covariance(count));
@@ -112,39 +123,79 @@ class WideNeighbours {
     const auto found = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
     std::copy(found.begin(), found.end(), all_.begin());
     count_ = found.size();
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PackedDirection& d = search.tree().to_sensor(all_[i].place);
+      x_[i] = d[0], y_[i] = d[1], z_[i] = d[2];
+    }
   }
 
   [[nodiscard]] Surfel surfel() const { return surfel_of(search_.tree(), place_, {all_.data(), count_}); }
+
   [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
-    return surfel_of(search_.tree(), place_, nearest_facing(side));
+    const std::uint64_t facing = bits_facing(side);
+    for (std::size_t i = 0; i < known_count_; ++i)
+      if (known_[i].facing == facing) return known_[i].surfel;
+    const auto count = static_cast<std::size_t>(std::popcount(facing));
+    const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
+    if (count < rule_.neighbours && !are_all)
+      return surfel_of(search_.tree(), place_,
+                       search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side));
+    Known& known = known_[known_count_++ % known_.size()];
+    known_count_ = std::min(known_count_, known_.size());
+    known = {facing, surfel_of(search_.tree(), place_, nearest_of(facing))};
+    return known.surfel;
   }
 
  private:
   static constexpr std::size_t kMost = NeighbourSearch::kMost;
 
-  std::span<const Neighbour> nearest_facing(const Eigen::Vector3d& side) {
-    const PointTree& tree = search_.tree();
+  /// A bit for each that was seen from the side.
+  [[nodiscard]] std::uint64_t bits_facing(const Eigen::Vector3d& side) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      bits |= std::uint64_t{side.x() * x_[i] + side.y() * y_[i] + side.z() * z_[i] >= 0.0} << i;
+    return bits;
+  }
+
+  std::span<const Neighbour> nearest_of(std::uint64_t bits) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      of_side_[count] = all_[i];
-      count += is_seen_from(side, tree.to_sensor(all_[i].place)) ? 1 : 0;
+    std::array<double, kMost> distances2;
+    for (; bits != 0; bits &= bits - 1) {
+      of_side_[count] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
+      distances2[count] = of_side_[count].distance2;
+      ++count;
     }
-    const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
-    if (count < rule_.neighbours && !are_all)
-      return search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side);
     if (count > rule_.neighbours) {
-      const auto begin = of_side_.begin(), end = begin + static_cast<std::ptrdiff_t>(count);
-      std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(rule_.neighbours), end, nearer_first(tree));
+      const auto wanted = static_cast<std::ptrdiff_t>(rule_.neighbours);
+      const auto begin = distances2.begin();
+      std::nth_element(begin, begin + wanted - 1, begin + static_cast<std::ptrdiff_t>(count));
+      const double furthest2 = distances2[rule_.neighbours - 1];
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        of_side_[kept] = of_side_[i];
+        kept += of_side_[i].distance2 <= furthest2 ? 1 : 0;
+      }
+      if (kept > rule_.neighbours)
+        std::nth_element(of_side_.begin(), of_side_.begin() + wanted,
+                         of_side_.begin() + static_cast<std::ptrdiff_t>(kept), nearer_first(search_.tree()));
       count = rule_.neighbours;
     }
     return {of_side_.data(), count};
   }
+
+  struct Known {
+    std::uint64_t facing;
+    Surfel surfel;
+  };
 
   NeighbourSearch& search_;
   std::size_t place_;
   const SurfelRule& rule_;
   std::size_t count_;
   std::array<Neighbour, kMost> all_, of_side_;
+  alignas(16) std::array<double, kMost> x_, y_, z_;
+  std::array<Known, 2> known_;
+  std::size_t known_count_ = 0;
 };
 
 /// Where the nearest neighbours are no flat surface: round or thick? If more of them are flat, as they are
