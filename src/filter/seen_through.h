@@ -19,17 +19,17 @@ namespace ray {
 /// further on than where it does: what hits the surface on which the point lies, and what hits one beside it,
 /// does not.
 ///
-/// Memory: some 70 bytes a point.
+/// Memory: some 90 bytes a point.
 class SeenThrough {
  public:
   /// Preconditions: radius > 0 if there are points, and there are less than 2^28.
-  SeenThrough(const std::vector<Eigen::Vector3d>& points, double radius);
+  SeenThrough(std::vector<Eigen::Vector3d> points, double radius);
 
   /// Counts a ray. Thread-safe. It visits the bricks on its way (Amanatides and Woo 1987), and in those with
   /// points looks at each, or at groups of them where they are many.
   void add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, bool bounded);
 
-  [[nodiscard]] std::size_t size() const { return passes_.size(); }
+  [[nodiscard]] std::size_t size() const { return points_.size(); }
   /// How many of the rays went through the ball of a point.
   [[nodiscard]] std::uint32_t passes(std::size_t point) const { return passes_[point]; }
 
@@ -50,27 +50,42 @@ class SeenThrough {
     std::uint64_t cells = 0;
     std::uint32_t before = 0;
   };
-  /// A ball: of a point, or around those of the nodes that follow up to `end`.
-  struct Node {
-    Eigen::Vector3d middle;
-    double radius2;
-    std::uint32_t point;  // or kIsGroup
-    std::uint32_t end;    // the node after it and what is in it
+  /// Balls of four points, or around those of four groups of points. They are looked at together, in single
+  /// precision, so a little larger than they are, and by their offset from the middle of the brick.
+  struct Four {
+    Eigen::Array4f x = Eigen::Array4f::Zero(), y = x, z = x;  // radii
+    Eigen::Array4f reach2 = Eigen::Array4f::Constant(-1.0F);  // squared radii; below 0 where there is none
+    std::array<std::uint32_t, 4> which{};                     // points, or the first Four of each group
+
+    void set(std::size_t k, const Eigen::Vector3f& middle, float most2, std::uint32_t what) {
+      const auto at = static_cast<Eigen::Index>(k);
+      x[at] = middle.x(), y[at] = middle.y(), z[at] = middle.z();
+      reach2[at] = most2;
+      which[k] = what;
+    }
+  };
+  /// Of a cell.
+  struct List {
+    std::uint32_t begin, end;  // in fours_
+    bool is_of_groups;
   };
   struct Line {
     Eigen::Vector3d start, direction;
   };
-  /// A point in a cell, and a number that is near for places near each other in its brick.
-  struct Listed {
-    std::uint32_t place, point;
-    bool operator<(const Listed& other) const { return place < other.place; }
+  /// Of a line, the way through a brick.
+  struct Way {
+    double in, out;               // m, from the start
+    Eigen::Vector3f from, along;  // radii, from the middle of the brick; a unit vector
   };
-  static constexpr std::uint32_t kIsGroup = 0xffffffff;
+  struct Listed {
+    Eigen::Vector3f offset;  // radii
+    std::uint32_t point;
+  };
 
-  void choose_cells(const Points& points);
-  void list_points(const Points& points);
-  void add_nodes(const Points& points, std::span<Listed> listed);
-  void add_group(const Points& points, std::span<const Listed> listed);
+  void choose_cells();
+  void list_points();
+  void add_list(std::span<Listed> listed);
+  void add_points(std::span<const Listed> listed);
   template <class Visit>
   void each_cell_of_ball(const Eigen::Vector3d& point, const Visit& visit) const;
   /// How many of the cells before have points.
@@ -79,15 +94,18 @@ class SeenThrough {
     const std::uint64_t before = occupied.cells & ((std::uint64_t{1} << cell % 64) - 1);
     return occupied.before + static_cast<std::size_t>(std::popcount(before));
   }
-  void visit(std::size_t cell, const Line& line, double in, double out);
+  template <class Visit>
+  void each_near(std::uint32_t begin, std::uint32_t end, const Way& way, const Visit& visit) const;
+  void visit(std::size_t cell, const Line& line, const Way& way);
 
+  Points points_;
   std::vector<std::uint32_t> passes_;
   double radius_;
   double width_;  // of a brick
   Cells cells_;
   std::vector<Occupied> occupied_;
-  std::vector<std::uint32_t> first_node_;  // of each cell with points, and one past the last
-  std::vector<Node> nodes_;
+  std::vector<List> lists_;  // of each cell with points
+  std::vector<Four> fours_;
 };
 
 }  // namespace ray

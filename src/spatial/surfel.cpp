@@ -11,8 +11,8 @@
 namespace ray {
 namespace {
 
-/// The moments of offsets from the point in the middle, as whole numbers of a 2^-22th of the furthest: sums of
-/// their products are exact, and so do not depend on the order of the neighbours. Two go at once.
+/// The moments of offsets from the point in the middle, as whole numbers of a 2^-22th of the furthest: sums
+/// of their products are exact, and so do not depend on the order of the neighbours. Two go at once.
 class ExactMoments {
  public:
   ExactMoments(const PointTree& tree, const Eigen::Vector3d& middle, std::span<const Neighbour> neighbours,
