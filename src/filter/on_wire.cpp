@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -194,15 +195,20 @@ bool is_on_wire(NeighbourSearch& search, std::size_t place, double spacing, doub
   const std::vector<NearWire> others = around(search, place, reach);
   const auto squared = [](double value) { return value * value; };
   if (others.size() <= kFewestOn) return false;
+  const auto is_wire = [&](const NearWire& other) {
+    WireTrial trial(other, ray, squared(kRangeSigma * spacing), squared(kAsideSigma * spacing));
+    for (const NearWire& near : others)
+      if (&near != &other) trial.add(near);
+    return trial.is_wire(others.size());
+  };
   const WireGuess guess(others, spacing);
   for (const NearWire& other : others) {
     const double length = other.offset.norm();
     if (!(length > spacing) || std::abs(other.offset.dot(ray)) > kWireAslant * length) continue;
-    if (!guess.may_be_wire(other, ray)) continue;
-    WireTrial trial(other, ray, squared(kRangeSigma * spacing), squared(kAsideSigma * spacing));
-    for (const NearWire& near : others)
-      if (&near != &other) trial.add(near);
-    if (trial.is_wire(others.size())) return true;
+    if (!guess.may_be_wire(other, ray))
+      assert(!is_wire(other));
+    else if (is_wire(other))
+      return true;
   }
   return false;
 }

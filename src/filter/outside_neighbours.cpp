@@ -3,10 +3,10 @@
 #include "neighbour_verdicts.h"
 #include "on_wire.h"
 #include "row_bits.h"
-#include "seen_through.h"
 #include "surface_points.h"
 
 #include <raycloud/core/memory_stream.h>
+#include <raycloud/spatial/seen_through.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "seen_through.h"
+#include <raycloud/spatial/seen_through.h>
 
 #include <algorithm>
 #include <atomic>
@@ -20,8 +20,8 @@ constexpr std::size_t kGroup = 8;              // points, at most
 constexpr double kRounded = 1.0 + 1e-9;
 
 std::int64_t brick_at(double value, double width) {
-  constexpr double kFar = 0x1p58;
-  return static_cast<std::int64_t>(std::clamp(std::floor(value / width), -kFar, kFar));
+  constexpr double kFurthest = 0x1p58;
+  return static_cast<std::int64_t>(std::clamp(std::floor(value / width), -kFurthest, kFurthest));
 }
 
 /// Every third bit, for eight parts of a brick along an axis.

@@ -19,14 +19,16 @@ namespace ray {
 /// further on than where it does: what hits the surface on which the point lies, and what hits one beside it,
 /// does not.
 ///
-/// Memory: some 90 bytes a point.
+/// Exact by the coordinates as doubles, up to 10^12 radii from the origin; of a ray that is longer than some
+/// 10^7 radii, the beginning counts. A tenth to half a µs a ray. Memory: some 90 bytes a point.
 class SeenThrough {
  public:
   /// Preconditions: radius > 0 if there are points, and there are less than 2^28.
   SeenThrough(std::vector<Eigen::Vector3d> points, double radius);
 
-  /// Counts a ray. Thread-safe. It visits the bricks on its way (Amanatides and Woo 1987), and in those with
-  /// points looks at each, or at groups of them where they are many.
+  /// Counts a ray. Thread-safe; the order of the rays changes nothing. It visits the bricks on its way
+  /// (Amanatides and Woo 1987), and in those with points looks at each, or at groups of them where they are
+  /// many.
   void add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, bool bounded);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
