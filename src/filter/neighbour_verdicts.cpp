@@ -2,6 +2,8 @@
 
 #include "noisy_plane.h"
 
+#include <raycloud/exec/parallel.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -31,7 +33,10 @@ class BlockJudge {
         open_(tree_.size(), Open::kNothing) {}
 
   std::vector<Verdict> take_verdicts() {
-    for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+    // The larger the range, the fewer have neighbours beyond.
+    const std::size_t places = std::clamp<std::size_t>(tree_.size() / 64, 4096, 16384);
+    parallel_for(context_, tree_.size(), places, [&](std::size_t begin, std::size_t end) {
+      NeighbourSearch search(tree_);
       judge_range(search, begin, end);
     });
     if (!block_.own.empty()) find_planes_around();
