@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace ray {
 namespace {
@@ -60,7 +61,9 @@ class BlockJudge {
   /// Who asks neighbours whose planes will soon be known.
   struct Asking {
     std::size_t place;
-    std::array<Neighbour, kSurfaceNeighbours> neighbours;
+    std::size_t count;
+    std::array<Neighbour, kSurfaceNeighbours> all;
+    [[nodiscard]] std::span<const Neighbour> neighbours() const { return std::span(all).first(count); }
   };
 
   void judge_range(NeighbourSearch& search, std::size_t begin, std::size_t end) {
@@ -69,18 +72,24 @@ class BlockJudge {
       if (!block_.is_own(tree_.index(place))) continue;
       const std::span<const Neighbour> nearest = find_plane(search, place);
       if (is_settled(place)) continue;
-      if (may_ask(place, nearest, begin, end)) {
-        asking.push_back({place, {}});
-        std::copy(nearest.begin(), nearest.end(), asking.back().neighbours.begin());
-      } else {
+      const std::optional<Asking> asks = asking_of(place, nearest);
+      if (asks && are_own_of_range(asks->neighbours(), begin, end))
+        asking.push_back(*asks);
+      else
         open_[place] = Open::kVerdict;
-      }
     }
     for (const Asking& one : asking)
-      judge(one.place, one.neighbours);
+      judge(one.place, one.neighbours());
   }
 
-  /// Returns the nearest neighbours if the plane is theirs, else none.
+  [[nodiscard]] bool are_own_of_range(std::span<const Neighbour> neighbours, std::size_t begin,
+                                      std::size_t end) const {
+    return std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
+      return neighbour.place >= begin && neighbour.place < end && block_.is_own(tree_.index(neighbour.place));
+    });
+  }
+
+  /// Returns what is known of the nearest neighbours.
   std::span<const Neighbour> find_plane(NeighbourSearch& search, std::size_t place) {
     const auto [surfel, nearest] = surfel_and_nearest(search, place, {kSurfaceNeighbours, reach_, true});
     planes_[place] = noisy_plane(tree_, place, surfel);
@@ -99,16 +108,30 @@ class BlockJudge {
     return true;
   }
 
-  /// Whether these are the neighbours that are to be asked, and all of their planes are of one range.
-  bool may_ask(std::size_t place, std::span<const Neighbour> nearest, std::size_t begin,
-               std::size_t end) const {
-    if (nearest.size() < kSurfaceNeighbours || planes_[place].normal.isZero()) return false;
-    const Eigen::Vector3d side = planes_[place].normal.cast<double>();
-    return std::all_of(nearest.begin(), nearest.end(), [&](const Neighbour& neighbour) {
-      return neighbour.place >= begin && neighbour.place < end &&
-             block_.is_own(tree_.index(neighbour.place)) &&
-             is_seen_from(side, tree_.to_sensor(neighbour.place));
-    });
+  /// The same as neighbours_of finds, from the nearest of any side. None if these are too few to tell.
+  std::optional<Asking> asking_of(std::size_t place, std::span<const Neighbour> nearest) const {
+    const NoisyPlane& plane = planes_[place];
+    if (plane.normal.isZero()) return {};
+    const Eigen::Vector3d side = plane.normal.cast<double>();
+    const double reach2 = static_cast<double>(plane.reach) * static_cast<double>(plane.reach);
+    std::array<Neighbour, NeighbourSearch::kMost> facing;
+    std::size_t count = 0;
+    double furthest2 = 0.0;
+    for (const Neighbour& neighbour : nearest) {
+      furthest2 = std::max(furthest2, neighbour.distance2);
+      facing[count] = neighbour;
+      count += is_seen_from(side, tree_.to_sensor(neighbour.place)) ? 1 : 0;
+    }
+    if (count < kSurfaceNeighbours && furthest2 <= reach2) return {};
+    const auto end_of = [&](std::size_t i) { return facing.begin() + static_cast<std::ptrdiff_t>(i); };
+    if (count > kSurfaceNeighbours) {
+      std::nth_element(facing.begin(), end_of(kSurfaceNeighbours), end_of(count), nearer_first(tree_));
+      count = kSurfaceNeighbours;
+    }
+    Asking asking{place, 0, {}};
+    for (std::size_t i = 0; i < count; ++i)
+      if (facing[i].distance2 <= reach2) asking.all[asking.count++] = facing[i];
+    return asking;
   }
 
   std::span<const Neighbour> neighbours_of(NeighbourSearch& search, std::size_t place) const {

@@ -120,15 +120,17 @@ class WideNeighbours {
  public:
   WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule)
       : search_(search), place_(place), rule_(rule) {
-    const auto found = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
-    std::copy(found.begin(), found.end(), all_.begin());
-    count_ = found.size();
+    found_ = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
+    std::copy(found_.begin(), found_.end(), all_.begin());
+    count_ = found_.size();
     for (std::size_t i = 0; i < count_; ++i) {
       const PackedDirection& d = search.tree().to_sensor(all_[i].place);
       x_[i] = d[0], y_[i] = d[1], z_[i] = d[2];
     }
   }
 
+  /// All, as long as they were the last that were searched; none after that.
+  [[nodiscard]] std::span<const Neighbour> found() const { return found_; }
   [[nodiscard]] Surfel surfel() const { return surfel_of(search_.tree(), place_, {all_.data(), count_}); }
 
   [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
@@ -137,9 +139,11 @@ class WideNeighbours {
       if (known_[i].facing == facing) return known_[i].surfel;
     const auto count = static_cast<std::size_t>(std::popcount(facing));
     const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
-    if (count < rule_.neighbours && !are_all)
+    if (count < rule_.neighbours && !are_all) {
+      found_ = {};
       return surfel_of(search_.tree(), place_,
                        search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side));
+    }
     Known& known = known_[known_count_++ % known_.size()];
     known_count_ = std::min(known_count_, known_.size());
     known = {facing, surfel_of(search_.tree(), place_, nearest_of(facing))};
@@ -191,6 +195,7 @@ class WideNeighbours {
   NeighbourSearch& search_;
   std::size_t place_;
   const SurfelRule& rule_;
+  std::span<const Neighbour> found_;
   std::size_t count_;
   std::array<Neighbour, kMost> all_, of_side_;
   alignas(16) std::array<double, kMost> x_, y_, z_;
@@ -201,8 +206,8 @@ class WideNeighbours {
 /// Where the nearest neighbours are no flat surface: round or thick? If more of them are flat, as they are
 /// where the two sides of a wall are no further apart than their points, their normal says where the sides
 /// are, else the ray; but the first normal does, if that leaves a clearly flatter surface.
-Surfel surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
-                       const Surfel& nearest, bool from_behind) {
+SurfelOf surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
+                         const Surfel& nearest, bool from_behind) {
   constexpr double kFlatEnough = 0.4;  // for that many
   constexpr double kClearly = 0.25;
   WideNeighbours neighbours(search, place, rule);
@@ -213,7 +218,8 @@ Surfel surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelR
   const Surfel other = neighbours.surfel_of_side(side);
   const bool first_is_flatter =
       first.variances[0] * other.variances[1] < kClearly * other.variances[0] * first.variances[1];
-  return neighbours.surfel_of_side((first_is_flatter ? first : other).normal);
+  const Surfel surfel = neighbours.surfel_of_side((first_is_flatter ? first : other).normal);
+  return {surfel, neighbours.found()};
 }
 
 /// With more of the neighbours seen from the side of the ray, if these are a surface.
@@ -246,7 +252,7 @@ SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const Su
     const Surfel& nearest = result.surfel;
     const bool from_behind = any_from_behind(tree, nearest.normal, result.nearest);
     if (!is_flat(nearest) && !all_seen_alike(tree, place, result.nearest))
-      result = {surfel_of_thick(search, place, rule, nearest, from_behind), {}};
+      result = surfel_of_thick(search, place, rule, nearest, from_behind);
     else if (is_flat(nearest) && from_behind)
       result = {of_side(of_side(nearest.normal).normal), {}};
   }

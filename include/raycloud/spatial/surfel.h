@@ -51,11 +51,11 @@ struct SurfelRule {
 /// on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one to five searches.
 [[nodiscard]] Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
 
-/// A surfel and whose it is.
+/// A surfel, and what is known of the neighbours.
 struct SurfelOf {
   Surfel surfel;
-  /// The nearest neighbours if it is theirs, whatever side they were seen from; else none. Valid until the
-  /// next search.
+  /// The nearest ones, whatever side they were seen from, as many as were searched: the rule's, or more. None
+  /// if the last search was one for a side. Valid until the next search.
   std::span<const Neighbour> nearest;
 };
 /// As surfel_at, for who asks the neighbours, too.
