@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 
 namespace ray {
@@ -125,7 +127,8 @@ class WideNeighbours {
     count_ = found_.size();
     for (std::size_t i = 0; i < count_; ++i) {
       const PackedDirection& d = search.tree().to_sensor(all_[i].place);
-      x_[i] = d[0], y_[i] = d[1], z_[i] = d[2];
+      const auto at = static_cast<Eigen::Index>(i);
+      x_[at] = d[0], y_[at] = d[1], z_[at] = d[2];
     }
   }
 
@@ -152,39 +155,53 @@ class WideNeighbours {
 
  private:
   static constexpr std::size_t kMost = NeighbourSearch::kMost;
+  using Doubles = Eigen::Array<double, kMost, 1>;
 
   /// A bit for each that was seen from the side.
   [[nodiscard]] std::uint64_t bits_facing(const Eigen::Vector3d& side) const {
+    const Doubles facing = side.x() * x_ + side.y() * y_ + side.z() * z_;  // as is_seen_from has it
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < count_; ++i)
-      bits |= std::uint64_t{side.x() * x_[i] + side.y() * y_[i] + side.z() * z_[i] >= 0.0} << i;
+      bits |= std::uint64_t{facing[static_cast<Eigen::Index>(i)] >= 0.0} << i;
     return bits;
   }
 
   std::span<const Neighbour> nearest_of(std::uint64_t bits) {
     std::size_t count = 0;
-    std::array<double, kMost> distances2;
+    Doubles distances2 = Doubles::Constant(std::numeric_limits<double>::infinity());
     for (; bits != 0; bits &= bits - 1) {
       of_side_[count] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
-      distances2[count] = of_side_[count].distance2;
+      distances2[static_cast<Eigen::Index>(count)] = of_side_[count].distance2;
       ++count;
     }
-    if (count > rule_.neighbours) {
-      const auto wanted = static_cast<std::ptrdiff_t>(rule_.neighbours);
-      const auto begin = distances2.begin();
-      std::nth_element(begin, begin + wanted - 1, begin + static_cast<std::ptrdiff_t>(count));
-      const double furthest2 = distances2[rule_.neighbours - 1];
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        of_side_[kept] = of_side_[i];
-        kept += of_side_[i].distance2 <= furthest2 ? 1 : 0;
-      }
-      if (kept > rule_.neighbours)
-        std::nth_element(of_side_.begin(), of_side_.begin() + wanted,
-                         of_side_.begin() + static_cast<std::ptrdiff_t>(kept), nearer_first(search_.tree()));
-      count = rule_.neighbours;
+    if (count <= rule_.neighbours) return {of_side_.data(), count};
+    const double most2 = distance2_of_nearest(distances2, count);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      of_side_[kept] = of_side_[i];
+      kept += of_side_[i].distance2 <= most2 ? 1 : 0;
     }
-    return {of_side_.data(), count};
+    if (kept > rule_.neighbours) {
+      const auto at = [&](std::size_t i) { return of_side_.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::nth_element(at(0), at(rule_.neighbours), at(kept), nearer_first(search_.tree()));
+    }
+    return {of_side_.data(), rule_.neighbours};
+  }
+
+  /// A squared distance within which there are as many as wanted, and seldom more. As the number of points on
+  /// a surface grows with the squared distance, a guess by proportion is soon right.
+  [[nodiscard]] double distance2_of_nearest(const Doubles& distances2, std::size_t count) const {
+    constexpr int kGuesses = 12;
+    const auto wanted = static_cast<double>(rule_.neighbours);
+    double low = 0.0, high = distances2.head(static_cast<Eigen::Index>(count)).maxCoeff();
+    double low_count = 0.0, high_count = static_cast<double>(count);
+    for (int guess = 0; guess < kGuesses && high_count > wanted; ++guess) {
+      const double at = low + (high - low) * (wanted - low_count + 0.5) / (high_count - low_count + 1.0);
+      const auto within = static_cast<double>((distances2 <= at).count());
+      (within >= wanted ? high : low) = at;
+      (within >= wanted ? high_count : low_count) = within;
+    }
+    return high;
   }
 
   struct Known {
@@ -198,7 +215,7 @@ class WideNeighbours {
   std::span<const Neighbour> found_;
   std::size_t count_;
   std::array<Neighbour, kMost> all_, of_side_;
-  alignas(16) std::array<double, kMost> x_, y_, z_;
+  Doubles x_ = Doubles::Zero(), y_ = x_, z_ = x_;
   std::array<Known, 2> known_;
   std::size_t known_count_ = 0;
 };
