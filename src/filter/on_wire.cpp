@@ -2,7 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace ray {
@@ -33,6 +38,73 @@ std::vector<NearWire> around(NeighbourSearch& search, std::size_t place, double 
         {tree.point(near.place) - tree.point(place), unpack_direction(tree.to_sensor(near.place))});
   return result;
 }
+
+/// How many of those on a line have to be on it, besides the one that gives the direction.
+constexpr std::size_t kFewestOn = 2, kPartOn = 16;
+bool are_enough(std::size_t others, std::size_t around) {
+  return others >= kFewestOn && others * kPartOn >= around;
+}
+
+/// Whether it is worth trying a line: by single precision, in which four points go at once. Never false where
+/// a trial would find a wire.
+class WireGuess {
+ public:
+  WireGuess(std::span<const NearWire> others, double spacing) : count_(others.size()), scale_(1.0 / spacing) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3f offset = (scale_ * others[i].offset).cast<float>();
+      const Eigen::Vector3f ray = others[i].ray.cast<float>();
+      x_[i] = offset.x(), y_[i] = offset.y(), z_[i] = offset.z();
+      ray_x_[i] = ray.x(), ray_y_[i] = ray.y(), ray_z_[i] = ray.z();
+    }
+  }
+
+  /// The line towards `other`, one of them, as seen along `ray`.
+  [[nodiscard]] bool may_be_wire(const NearWire& other, const Eigen::Vector3d& ray) const {
+    const Eigen::Vector3d way = other.offset.normalized();
+    const Eigen::Vector3d across = way.cross(ray).normalized(), away = across.cross(way);
+    const Eigen::Vector3f along = (way / (scale_ * other.offset.norm())).cast<float>();
+    const Eigen::Vector3f side = across.cast<float>(), depth = away.cast<float>();
+    constexpr auto kRange2 = static_cast<float>(kRangeSigma * kRangeSigma);
+    constexpr auto kAside2 = static_cast<float>(kAsideSigma * kAsideSigma);
+    constexpr auto kMostPart2 = static_cast<float>(1.001 * kExtrapolated * kExtrapolated);
+    constexpr auto kMost2 = static_cast<float>(kDeviations2);
+    // What is rounded off is below a thousandth of each of the terms of a square.
+    constexpr float kLess = 0.999F, kMore = 1.001F * kMost2;
+    const auto other_side = static_cast<float>(across.dot(other.ray));
+    const auto other_depth = static_cast<float>(away.dot(other.ray));
+    const auto own_depth = static_cast<float>(away.dot(ray));
+    Floats excess;  // the same as WireTrial::add asks, but below 0 where it is on the line
+    for (std::size_t i = 0; i < kAroundWire; ++i) {
+      const float part = along.x() * x_[i] + along.y() * y_[i] + along.z() * z_[i];
+      const float off = side.x() * x_[i] + side.y() * y_[i] + side.z() * z_[i];
+      const float off_depth = depth.x() * x_[i] + depth.y() * y_[i] + depth.z() * z_[i];
+      const float own_side = side.x() * ray_x_[i] + side.y() * ray_y_[i] + side.z() * ray_z_[i];
+      const float near_depth = depth.x() * ray_x_[i] + depth.y() * ray_y_[i] + depth.z() * ray_z_[i];
+      const float part2 = part * part, of_own = (1.0F - part) * own_depth;
+      const float to_side = kRange2 * (part2 * other_side * other_side + own_side * own_side) + kAside2;
+      const float in_depth =
+          kRange2 * (of_own * of_own + part2 * other_depth * other_depth + near_depth * near_depth) + kAside2;
+      const float both = kRange2 * (part2 * other_side * other_depth + own_side * near_depth);
+      const float square = in_depth * (kLess * off * off - kMore * to_side) +
+                           kLess * to_side * off_depth * off_depth +
+                           both * (kMost2 * both - 2.0F * off * off_depth);
+      const float too_far = part2 - kMostPart2;
+      excess[i] = square < too_far ? too_far : square;
+    }
+    std::int32_t on = 0;
+    for (std::size_t i = 0; i < kAroundWire; ++i)
+      on += excess[i] <= 0.0F ? 1 : 0;
+    // The places that are not taken are all at the point itself, which is on the line.
+    const auto none = static_cast<std::int32_t>(kAroundWire - count_);
+    return on > none && are_enough(static_cast<std::size_t>(on - none - 1), count_);
+  }
+
+ private:
+  using Floats = std::array<float, kAroundWire>;
+  std::size_t count_;
+  double scale_;
+  alignas(16) Floats x_{}, y_{}, z_{}, ray_x_{}, ray_y_{}, ray_z_{};  // spacings
+};
 
 /// One line through the point in question, and what lies on it.
 class WireTrial {
@@ -77,10 +149,10 @@ class WireTrial {
 
   /// Of so many points around.
   [[nodiscard]] bool is_wire(std::size_t around) const {
-    constexpr std::size_t kFewest = 2, kPart = 16, kBeside = 3;
+    constexpr std::size_t kBeside = 3;
     constexpr double kMostly = 2.0 / 3.0;
     const std::size_t others = on_ - 1;  // without the one that the line goes through anyway
-    return others >= kFewest && others * kPart >= around && kBeside * beside_ <= others &&
+    return are_enough(others, around) && kBeside * beside_ <= others &&
            static_cast<double>(others) >= kMostly * static_cast<double>(seen_) && is_on_it();
   }
 
@@ -122,13 +194,21 @@ bool is_on_wire(NeighbourSearch& search, std::size_t place, double spacing, doub
   const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place)).normalized();
   const std::vector<NearWire> others = around(search, place, reach);
   const auto squared = [](double value) { return value * value; };
-  for (const NearWire& other : others) {
-    const double length = other.offset.norm();
-    if (!(length > spacing) || std::abs(other.offset.dot(ray)) > kWireAslant * length) continue;
+  if (others.size() <= kFewestOn) return false;
+  const auto is_wire = [&](const NearWire& other) {
     WireTrial trial(other, ray, squared(kRangeSigma * spacing), squared(kAsideSigma * spacing));
     for (const NearWire& near : others)
       if (&near != &other) trial.add(near);
-    if (trial.is_wire(others.size())) return true;
+    return trial.is_wire(others.size());
+  };
+  const WireGuess guess(others, spacing);
+  for (const NearWire& other : others) {
+    const double length = other.offset.norm();
+    if (!(length > spacing) || std::abs(other.offset.dot(ray)) > kWireAslant * length) continue;
+    if (!guess.may_be_wire(other, ray))
+      assert(!is_wire(other));
+    else if (is_wire(other))
+      return true;
   }
   return false;
 }

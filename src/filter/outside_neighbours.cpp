@@ -1,12 +1,12 @@
 #include "outside_neighbours.h"
 
-#include "noisy_plane.h"
+#include "neighbour_verdicts.h"
 #include "on_wire.h"
 #include "row_bits.h"
-#include "seen_through.h"
 #include "surface_points.h"
 
 #include <raycloud/core/memory_stream.h>
+#include <raycloud/spatial/seen_through.h>
 
 #include <algorithm>
 #include <array>
@@ -15,115 +15,12 @@
 namespace ray {
 namespace {
 
-/// Student's quantile for a normal one (Cornish and Fisher 1938): the variances of sixteen neighbours, who
-/// share most of theirs, amount to some forty degrees of freedom.
-double for_estimated_sigma(double sigmas) {
-  constexpr double kFreedom = 40.0;
-  return sigmas + (sigmas * sigmas * sigmas + sigmas) / (4.0 * kFreedom);
-}
-
-/// What is known of a point from those around it: whether it stays, is noise, or, from kSuspect on, so alone
-/// that rays should tell, with so many others beside it.
-using Verdict = std::uint8_t;
-constexpr Verdict kStays = 0;
-constexpr Verdict kNoise = 1;
-constexpr Verdict kSuspect = 2;
-
-/// Around a point of a surface there are some 27 others so near.
-constexpr double kBeside = 3.0;  // spacings
-constexpr std::size_t kAlone = 2;
 /// Rays that pass further away than a hand is wide leave room for a leaf.
 constexpr double kMostRadius = 0.1;  // m
+/// How far wires are looked for, in reaches of a surfel.
+constexpr double kWireReaches = 2.0;
 
-/// How far results depend on what is around, in reaches of a surfel: a wire is looked for as far as two, and
-/// what is on one, by the surfels there.
-constexpr double kReaches = 3.0;
-
-/// What of the verdicts wires are spared. A wire is looked for among the points of no surface, in which 16
-/// others are nowhere near.
-void spare_wires(const Context& context, const PointTree& tree, std::span<const NoisyPlane> planes,
-                 double spacing, double reach, std::vector<Verdict>& verdicts) {
-  constexpr double kThin = 6.0;  // spacings; on a surface it is 2.3
-  std::vector<std::uint8_t> thin(tree.size());
-  std::vector<std::uint32_t> place_of(tree.size());
-  for (std::size_t place = 0; place < tree.size(); ++place) {
-    const NoisyPlane& plane = planes[place];
-    thin[tree.index(place)] =
-        plane.points <= kSurfaceNeighbours || plane.is_line || plane.reach > kThin * spacing ? 1 : 0;
-    place_of[tree.index(place)] = static_cast<std::uint32_t>(place);
-  }
-  std::vector<SeenPoint> points;
-  std::vector<std::uint32_t> indices;
-  for (std::size_t index = 0; index < tree.size(); ++index) {
-    if (thin[index] == 0) continue;
-    points.push_back({tree.point(place_of[index]), tree.to_sensor(place_of[index])});
-    indices.push_back(static_cast<std::uint32_t>(index));
-  }
-  const PointTree thin_tree(context, points);
-  for_each_place(context, thin_tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place) {
-      Verdict& verdict = verdicts[indices[thin_tree.index(place)]];
-      if (verdict != kStays && is_on_wire(search, place, spacing, reach)) verdict = kStays;
-    }
-  });
-}
-
-std::vector<Verdict> judge_block(const Context& context, Block<SeenPoint>&& block, double reach,
-                                 double sigmas) {
-  const PointTree tree(context, block.records);
-  block.records = std::vector<SeenPoint>();
-  const double surface_reach = reach / kReaches;
-  const double spacing = surface_reach / kReachSpacings;
-  std::vector<NoisyPlane> planes(tree.size());
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place)
-      planes[place] =
-          noisy_plane(tree, place, surfel_at(search, place, {kSurfaceNeighbours, surface_reach, true}));
-  });
-  std::vector<Verdict> verdicts(tree.size());
-  const double most = for_estimated_sigma(sigmas);
-  const double beside2 = kBeside * kBeside * spacing * spacing;
-  for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place) {
-      const NoisyPlane& plane = planes[place];
-      if (!block.is_own(tree.index(place))) continue;
-      Verdict& verdict = verdicts[tree.index(place)];
-      if (plane.points <= kTooFew) {
-        verdict = std::isfinite(reach) ? kNoise : kStays;  // in a cloud of a few rays nobody can tell
-        continue;
-      }
-      if (is_surely_inside(plane, most, kBeside * spacing)) continue;
-      const auto neighbours =
-          plane.normal.isZero()
-              ? search.nearest(place, kSurfaceNeighbours, plane.reach)
-              : search.nearest_facing(place, kSurfaceNeighbours, plane.reach, plane.normal.cast<double>());
-      const auto others = static_cast<std::size_t>(
-          std::count_if(neighbours.begin(), neighbours.end(),
-                        [&](const Neighbour& neighbour) { return neighbour.distance2 <= beside2; }));
-      if (is_outside(tree, planes, place, neighbours, most))
-        verdict = kNoise;
-      else if (others <= kAlone && !plane.is_flat)
-        verdict = static_cast<Verdict>(kSuspect + others);
-    }
-  });
-  if (std::isfinite(reach)) spare_wires(context, tree, planes, spacing, reach - surface_reach, verdicts);
-  return verdicts;
-}
-
-/// Points alone, and where their rays are in the cloud.
-struct Suspects {
-  std::vector<std::uint64_t> rows;
-  std::vector<Eigen::Vector3d> points;
-  std::vector<std::uint8_t> beside;  // others
-
-  void add(std::uint64_t row, const Eigen::Vector3d& point, Verdict verdict) {
-    rows.push_back(row);
-    points.push_back(point);
-    beside.push_back(verdict - kSuspect);
-  }
-};
-
-/// What all blocks say: which rays are noise, and which are suspect.
+/// What all blocks say: which rays are noise, and which may be, and the points among which to look for wires.
 class Findings {
  public:
   void add(const RayCloud& rays, std::span<const Verdict> verdicts) {
@@ -131,8 +28,17 @@ class Findings {
     for (std::size_t i = 0, next = 0; i < rays.size(); ++i) {
       if (rays.bounded[i] == 0) continue;
       const Verdict verdict = verdicts[next++];
-      if (verdict == kNoise) mask[i] = 1;
-      if (verdict >= kSuspect) suspects_.add(rows_ + i, rays.ends[i], verdict);
+      const Candidate candidate{rows_ + i, verdict.is_thin ? thin_.size() : kNotThin};
+      if (verdict.is_thin) thin_.push_back(seen_point(rays, i));
+      if (verdict.kind == Verdict::kSuspect) {
+        suspects_.push_back({candidate, verdict.beside});
+        suspect_points_.push_back(rays.ends[i]);
+      }
+      if (verdict.kind != Verdict::kNoise) continue;
+      if (verdict.is_thin)
+        candidates_.push_back(candidate);
+      else
+        mask[i] = 1;
     }
     noise_.set(rows_, mask);
     rows_ += rays.size();
@@ -140,8 +46,9 @@ class Findings {
 
   /// Lets all rays of the cloud tell of the suspects, and rewinds it.
   void ask_rays(const Context& context, RaySource& source, double radius) {
-    if (suspects_.points.empty() || !(radius > 0.0)) return;
-    SeenThrough balls(std::move(suspects_.points), radius);
+    if (suspects_.empty() || !(radius > 0.0)) return;
+    SeenThrough balls(suspect_points_, radius);
+    suspect_points_ = std::vector<Eigen::Vector3d>();
     stream(
         context, source, nullptr,
         [&](const RayCloud& rays) {
@@ -151,9 +58,32 @@ class Findings {
         },
         [](const RayCloud&, Nothing) {});
     source.rewind();
-    constexpr std::array<std::uint8_t, 1> kSet{1};
     for (std::size_t i = 0; i < balls.size(); ++i)
-      if (is_seen_through(balls.passes(i), suspects_.beside[i])) noise_.set(suspects_.rows[i], kSet);
+      if (is_seen_through(balls.passes(i), suspects_[i].beside)) candidates_.push_back(suspects_[i].ray);
+    suspects_ = std::vector<Suspect>();
+  }
+
+  /// Of the rays that may be noise those are, that did not end on a wire. A wire is looked for among the
+  /// points of no surface.
+  void spare_wires(const Context& context, double spacing) {
+    std::vector<std::uint8_t> on_wire(thin_.size());
+    if (std::isfinite(spacing)) {
+      constexpr std::uint8_t kAsked = 2;
+      for (const Candidate& candidate : candidates_)
+        if (candidate.thin != kNotThin) on_wire[candidate.thin] = kAsked;
+      const PointTree tree(context, thin_);
+      thin_ = std::vector<SeenPoint>();
+      for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+          std::uint8_t& is_on = on_wire[tree.index(place)];
+          if (is_on == kAsked)
+            is_on = is_on_wire(search, place, spacing, kWireReaches * kReachSpacings * spacing) ? 1 : 0;
+        }
+      });
+    }
+    constexpr std::array<std::uint8_t, 1> kSet{1};
+    for (const Candidate& candidate : candidates_)
+      if (candidate.thin == kNotThin || on_wire[candidate.thin] == 0) noise_.set(candidate.row, kSet);
   }
 
   StreamCounts write_rest(const Context& context, RaySource& source, RaySink& sink) const {
@@ -177,22 +107,35 @@ class Findings {
     return passes >= kFewestPasses && passes >= kPasses * (beside + 0.5);
   }
 
+  static constexpr std::size_t kNotThin = ~std::size_t{0};
+  struct Candidate {
+    std::uint64_t row;
+    std::size_t thin;  // which of thin_
+  };
+  struct Suspect {
+    Candidate ray;
+    std::uint8_t beside;  // others
+  };
+
   std::uint64_t rows_ = 0;
   RowBits noise_;
-  Suspects suspects_;
+  std::vector<Candidate> candidates_;
+  std::vector<Suspect> suspects_;
+  std::vector<Eigen::Vector3d> suspect_points_;
+  std::vector<SeenPoint> thin_;
 };
 
 }  // namespace
 
 Denoised outside_neighbours(const Context& context, RaySource& source, RaySink& sink, double sigmas) {
-  double radius = 0.0;
+  double spacing = 0.0;
   const auto reach_of = [&](const EndSample& sample) {
     const double reach = neighbour_reach(sample);
-    radius = std::min(kBeside * reach / kReachSpacings, kMostRadius);
-    return kReaches * reach;
+    spacing = reach / kReachSpacings;
+    return kVerdictReaches * reach;
   };
   const auto compute = [&](const Context& with, Block<SeenPoint>&& block, double reach) {
-    return judge_block(with, std::move(block), reach, sigmas);
+    return judge_block(with, std::move(block), reach / kVerdictReaches, sigmas);
   };
   Findings findings;
   const auto collect = [&](const RayCloud& rays, std::span<const Verdict> verdicts) {
@@ -203,7 +146,8 @@ Denoised outside_neighbours(const Context& context, RaySource& source, RaySink& 
   run_blocks<SeenPoint, Verdict>(context, source, nowhere, {.bytes_per_record = 90, .reach = reach_of},
                                  seen_point, compute, collect);
   source.rewind();
-  findings.ask_rays(context, source, radius);
+  findings.ask_rays(context, source, std::min(kBeside * spacing, kMostRadius));
+  findings.spare_wires(context, spacing);
   return {.counts = findings.write_rest(context, source, sink)};
 }
 

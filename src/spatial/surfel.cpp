@@ -1,50 +1,19 @@
+#include "exact_moments.h"
+
 #include <raycloud/spatial/surfel.h>
 #include <raycloud/spatial/symmetric_eigen.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
 
 namespace ray {
 namespace {
-
-/// Offsets from the point in the middle as whole numbers of a 2^-22th of the furthest: sums of their products
-/// are exact, and so do not depend on the order of the neighbours.
-class ExactMoments {
- public:
-  explicit ExactMoments(double furthest2) {
-    int exponent = 0;
-    static_cast<void>(std::frexp(std::sqrt(furthest2), &exponent));
-    scale_ = std::ldexp(1.0, 22 - exponent);
-  }
-
-  void add(const Eigen::Vector3d& offset) {
-    const double x = whole(offset.x()), y = whole(offset.y()), z = whole(offset.z());
-    sum_x_ += x, sum_y_ += y, sum_z_ += z;
-    xx_ += x * x, xy_ += x * y, xz_ += x * z;
-    yy_ += y * y, yz_ += y * z, zz_ += z * z;
-  }
-
-  /// Of `count` points, those that were not added being at the middle.
-  [[nodiscard]] Eigen::Vector3d mean(double count) const {
-    return Eigen::Vector3d(sum_x_, sum_y_, sum_z_) / (count * scale_);
-  }
-  [[nodiscard]] Eigen::Matrix3d covariance(double count) const {
-    const Eigen::Vector3d sum(sum_x_, sum_y_, sum_z_);
-    Eigen::Matrix3d products;
-    products << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
-    return (products - sum * sum.transpose() / count) / (count * scale_ * scale_);
-  }
-
- private:
-  [[nodiscard]] double whole(double offset) const {
-    constexpr double kRounds = 0x1.8p52;
-    return offset * scale_ + kRounds - kRounds;
-  }
-
-  double scale_ = 1.0;
-  double sum_x_ = 0.0, sum_y_ = 0.0, sum_z_ = 0.0;
-  double xx_ = 0.0, xy_ = 0.0, xz_ = 0.0, yy_ = 0.0, yz_ = 0.0, zz_ = 0.0;
-};
 
 Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
   Surfel surfel;
@@ -55,9 +24,7 @@ Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neigh
   for (const Neighbour& neighbour : neighbours)
     surfel.reach2 = std::max(surfel.reach2, neighbour.distance2);
   if (surfel.reach2 > 0.0) {
-    ExactMoments moments(surfel.reach2);
-    for (const Neighbour& neighbour : neighbours)
-      moments.add(tree.point(neighbour.place) - middle);
+    const ExactMoments moments(tree, middle, neighbours, surfel.reach2);
     const double count = surfel.count;
     surfel.centroid += moments.mean(count);
     const SymmetricEigen eigen = symmetric_eigen(moments.covariance(count));
@@ -72,9 +39,8 @@ Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neigh
 
 bool any_from_behind(const PointTree& tree, const Eigen::Vector3d& normal,
                      std::span<const Neighbour> neighbours) {
-  return std::any_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
-    const PackedDirection& d = tree.to_sensor(neighbour.place);
-    return normal.x() * d[0] + normal.y() * d[1] + normal.z() * d[2] < 0.0;
+  return !std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
+    return is_seen_from(normal, tree.to_sensor(neighbour.place));
   });
 }
 
@@ -102,14 +68,126 @@ bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Ne
   });
 }
 
-/// A direction to tell sides by, where the nearest neighbours are no flat surface: the normal of more of
-/// them, if that is one, as it is where the two sides of a wall are no further apart than their points; else
-/// the ray.
-Eigen::Vector3d side_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
-  const Surfel surfel = surfel_of(search.tree(), place, search.nearest(place, wide, rule.reach));
+/// More of the nearest than a surfel has, and from these, nearly always, the nearest of any side.
+class WideNeighbours {
+ public:
+  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule)
+      : search_(search), place_(place), rule_(rule) {
+    found_ = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
+    std::copy(found_.begin(), found_.end(), all_.begin());
+    count_ = found_.size();
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PackedDirection& d = search.tree().to_sensor(all_[i].place);
+      const auto at = static_cast<Eigen::Index>(i);
+      x_[at] = d[0], y_[at] = d[1], z_[at] = d[2];
+    }
+  }
+
+  /// All, as long as they were the last that were searched; none after that.
+  [[nodiscard]] std::span<const Neighbour> found() const { return found_; }
+  [[nodiscard]] Surfel surfel() const { return surfel_of(search_.tree(), place_, {all_.data(), count_}); }
+
+  [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
+    const std::uint64_t facing = bits_facing(side);
+    for (std::size_t i = 0; i < known_count_; ++i)
+      if (known_[i].facing == facing) return known_[i].surfel;
+    const auto count = static_cast<std::size_t>(std::popcount(facing));
+    const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
+    if (count < rule_.neighbours && !are_all) {
+      found_ = {};
+      return surfel_of(search_.tree(), place_,
+                       search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side));
+    }
+    Known& known = known_[known_count_++ % known_.size()];
+    known_count_ = std::min(known_count_, known_.size());
+    known = {facing, surfel_of(search_.tree(), place_, nearest_of(facing))};
+    return known.surfel;
+  }
+
+ private:
+  static constexpr std::size_t kMost = NeighbourSearch::kMost;
+  using Doubles = Eigen::Array<double, kMost, 1>;
+
+  /// A bit for each that was seen from the side.
+  [[nodiscard]] std::uint64_t bits_facing(const Eigen::Vector3d& side) const {
+    const Doubles facing = side.x() * x_ + side.y() * y_ + side.z() * z_;  // as is_seen_from has it
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      bits |= std::uint64_t{facing[static_cast<Eigen::Index>(i)] >= 0.0} << i;
+    return bits;
+  }
+
+  std::span<const Neighbour> nearest_of(std::uint64_t bits) {
+    std::size_t count = 0;
+    Doubles distances2 = Doubles::Constant(std::numeric_limits<double>::infinity());
+    for (; bits != 0; bits &= bits - 1) {
+      of_side_[count] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
+      distances2[static_cast<Eigen::Index>(count)] = of_side_[count].distance2;
+      ++count;
+    }
+    if (count <= rule_.neighbours) return {of_side_.data(), count};
+    const double most2 = distance2_of_nearest(distances2, count);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      of_side_[kept] = of_side_[i];
+      kept += of_side_[i].distance2 <= most2 ? 1 : 0;
+    }
+    if (kept > rule_.neighbours) {
+      const auto at = [&](std::size_t i) { return of_side_.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::nth_element(at(0), at(rule_.neighbours), at(kept), nearer_first(search_.tree()));
+    }
+    return {of_side_.data(), rule_.neighbours};
+  }
+
+  /// A squared distance within which there are as many as wanted, and seldom more. As the number of points on
+  /// a surface grows with the squared distance, a guess by proportion is soon right.
+  [[nodiscard]] double distance2_of_nearest(const Doubles& distances2, std::size_t count) const {
+    constexpr int kGuesses = 12;
+    const auto wanted = static_cast<double>(rule_.neighbours);
+    double low = 0.0, high = distances2.head(static_cast<Eigen::Index>(count)).maxCoeff();
+    double low_count = 0.0, high_count = static_cast<double>(count);
+    for (int guess = 0; guess < kGuesses && high_count > wanted; ++guess) {
+      const double at = low + (high - low) * (wanted - low_count + 0.5) / (high_count - low_count + 1.0);
+      const auto within = static_cast<double>((distances2 <= at).count());
+      (within >= wanted ? high : low) = at;
+      (within >= wanted ? high_count : low_count) = within;
+    }
+    return high;
+  }
+
+  struct Known {
+    std::uint64_t facing;
+    Surfel surfel;
+  };
+
+  NeighbourSearch& search_;
+  std::size_t place_;
+  const SurfelRule& rule_;
+  std::span<const Neighbour> found_;
+  std::size_t count_;
+  std::array<Neighbour, kMost> all_, of_side_;
+  Doubles x_ = Doubles::Zero(), y_ = x_, z_ = x_;
+  std::array<Known, 2> known_;
+  std::size_t known_count_ = 0;
+};
+
+/// Where the nearest neighbours are no flat surface: round or thick? If more of them are flat, as they are
+/// where the two sides of a wall are no further apart than their points, their normal says where the sides
+/// are, else the ray; but the first normal does, if that leaves a clearly flatter surface.
+SurfelOf surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
+                         const Surfel& nearest, bool from_behind) {
   constexpr double kFlatEnough = 0.4;  // for that many
-  return is_flat(surfel, kFlatEnough) ? surfel.normal : unpack_direction(search.tree().to_sensor(place));
+  constexpr double kClearly = 0.25;
+  WideNeighbours neighbours(search, place, rule);
+  const Surfel wide = neighbours.surfel();
+  const Eigen::Vector3d side =
+      is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(search.tree().to_sensor(place));
+  const Surfel first = from_behind ? neighbours.surfel_of_side(nearest.normal) : nearest;
+  const Surfel other = neighbours.surfel_of_side(side);
+  const bool first_is_flatter =
+      first.variances[0] * other.variances[1] < kClearly * other.variances[0] * first.variances[1];
+  const Surfel surfel = neighbours.surfel_of_side((first_is_flatter ? first : other).normal);
+  return {surfel, neighbours.found()};
 }
 
 /// With more of the neighbours seen from the side of the ray, if these are a surface.
@@ -118,28 +196,6 @@ Surfel past_ring(NeighbourSearch& search, std::size_t place, const SurfelRule& r
   const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
   const Surfel surfel = surfel_of(search.tree(), place, search.nearest_facing(place, wide, rule.reach, ray));
   return is_flat(surfel) && !is_ring(surfel, ray) ? surfel : ring;
-}
-
-Surfel nearest_surfel(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const PointTree& tree = search.tree();
-  const auto neighbours = search.nearest(place, rule.neighbours, rule.reach);
-  Surfel surfel = surfel_of(tree, place, neighbours);
-  if (!rule.by_side) return surfel;
-  const bool flat = is_flat(surfel);
-  const bool from_behind = any_from_behind(tree, surfel.normal, neighbours);
-  if (flat ? !from_behind : all_seen_alike(tree, place, neighbours)) return surfel;
-  const auto of_side = [&](const Eigen::Vector3d& side) {
-    return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
-  };
-  if (flat) return of_side(of_side(surfel.normal).normal);
-  // Round or thick? The first way of telling sides, if it leaves a clearly flatter surface.
-  const Eigen::Vector3d side = side_of_thick(search, place, rule);
-  if (from_behind) surfel = of_side(surfel.normal);
-  const Surfel other = of_side(side);
-  constexpr double kClearly = 0.25;
-  const bool first_is_flatter =
-      surfel.variances[0] * other.variances[1] < kClearly * other.variances[0] * surfel.variances[1];
-  return of_side((first_is_flatter ? surfel : other).normal);
 }
 
 }  // namespace
@@ -152,11 +208,30 @@ Shape shape_of(const Surfel& surfel) {
           .planarity = (extents[1] - extents[0]) / extents[2]};
 }
 
+SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
+  const PointTree& tree = search.tree();
+  SurfelOf result;
+  result.nearest = search.nearest(place, rule.neighbours, rule.reach);
+  result.surfel = surfel_of(tree, place, result.nearest);
+  if (rule.by_side) {
+    const auto of_side = [&](const Eigen::Vector3d& side) {
+      return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
+    };
+    const Surfel& nearest = result.surfel;
+    const bool from_behind = any_from_behind(tree, nearest.normal, result.nearest);
+    if (!is_flat(nearest) && !all_seen_alike(tree, place, result.nearest))
+      result = surfel_of_thick(search, place, rule, nearest, from_behind);
+    else if (is_flat(nearest) && from_behind)
+      result = {of_side(of_side(nearest.normal).normal), {}};
+  }
+  if (!rule.past_rings) return result;
+  const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place));
+  if (is_ring(result.surfel, ray)) result = {past_ring(search, place, rule, result.surfel, ray), {}};
+  return result;
+}
+
 Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const Surfel surfel = nearest_surfel(search, place, rule);
-  if (!rule.past_rings) return surfel;
-  const Eigen::Vector3d ray = unpack_direction(search.tree().to_sensor(place));
-  return is_ring(surfel, ray) ? past_ring(search, place, rule, surfel, ray) : surfel;
+  return surfel_and_nearest(search, place, rule).surfel;
 }
 
 }  // namespace ray

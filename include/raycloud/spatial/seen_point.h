@@ -25,6 +25,11 @@ using PackedDirection = std::array<std::int16_t, 3>;
   return Eigen::Vector3d(packed[0], packed[1], packed[2]) / 32767.0;
 }
 
+/// Whether something was seen from the side to which a direction points.
+[[nodiscard]] inline bool is_seen_from(const Eigen::Vector3d& side, const PackedDirection& to_sensor) {
+  return side.x() * to_sensor[0] + side.y() * to_sensor[1] + side.z() * to_sensor[2] >= 0.0;
+}
+
 /// The end of a bounded ray. 32 bytes.
 struct SeenPoint {
   Eigen::Vector3d end = Eigen::Vector3d::Zero();  ///< m

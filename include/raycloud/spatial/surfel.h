@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace ray {
 
@@ -49,5 +50,15 @@ struct SurfelRule {
 /// are apart, more of them, or the ray, tell another side, and the flatter outcome counts. The result depends
 /// on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one to five searches.
 [[nodiscard]] Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
+
+/// A surfel, and what is known of the neighbours.
+struct SurfelOf {
+  Surfel surfel;
+  /// The nearest ones, whatever side they were seen from, as many as were searched: the rule's, or more. None
+  /// if the last search was one for a side. Valid until the next search.
+  std::span<const Neighbour> nearest;
+};
+/// As surfel_at, for who asks the neighbours, too.
+[[nodiscard]] SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
 
 }  // namespace ray
