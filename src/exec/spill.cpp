@@ -110,6 +110,14 @@ void Spill::read_file(std::uint64_t from, std::byte* to, std::size_t bytes) cons
   }
 }
 
+void Spill::rewind(std::size_t stream) {
+  Stream& again = streams_[stream];
+  again.read = 0;
+  if (again.loaded != again.pages.size()) return;
+  write_page(again);  // the last, which was only in memory
+  again.loaded = ~std::uint64_t{0};
+}
+
 void Spill::drop(std::size_t stream) {
   streams_[stream].page = std::vector<std::byte>();
 }

@@ -6,11 +6,19 @@
 #include <cmath>
 
 namespace ray {
+namespace {
+
+constexpr double kScale2 = 1.7 * 1.7;
+constexpr double kThinnest = 0.002;  // m
+
+}  // namespace
+
+double semi_axis_of(const Surfel& surfel) {
+  return std::max(kThinnest, std::sqrt(kScale2 * surfel.variances[2]));
+}
 
 Ellipsoid ellipsoid_of(const Surfel& surfel, const Eigen::Vector3d& point, const Eigen::Vector3d& to_sensor,
                        double range_noise) {
-  constexpr double kScale2 = 1.7 * 1.7;
-  constexpr double kThinnest = 0.002;  // m
   constexpr double kThinnestShare2 = 1.0 / (200.0 * 200.0);
   constexpr double kFlat = 0.1;  // of the variance across
   constexpr double kRounding = 65536.0;

@@ -18,6 +18,10 @@ struct Contradiction {
   bool after = true;
 };
 
+/// An ellipsoid's number depends on the evidence of those that are up to so many steps away: from centre to
+/// centre, of which one lies in the ellipsoid of the other.
+inline constexpr int kRegionSteps = 5;
+
 /// For each ellipsoid, by slot, the number of rays below which it is transient. Every step treats all numbers
 /// at once: it takes medians, minima and maxima, and multiples of them.
 ///

@@ -116,19 +116,29 @@ class SpilledBlocks {
         own_(cuts_.parts(), page_bytes(memory / 16 / sizeof(Record))),
         results_(cuts_.parts(), page_bytes(memory / 16)) {}
 
-  /// The records go to every block that may need them. May be called at the same time.
+  /// The records go to every block within reach. May be called at the same time.
   [[nodiscard]] Copies<Record> sort(const RayCloud& rays, const std::vector<Record>& records) const {
+    std::vector<std::uint32_t> near;
+    return sort(rays, records, [&](const Eigen::Vector3d& end) {
+      cuts_.parts_near(end, reach_, near);
+      return std::span<const std::uint32_t>(near);
+    });
+  }
+
+  /// They go to the blocks `parts_for(end)`, of which that with the end is one.
+  template <class PartsFor>
+  [[nodiscard]] Copies<Record> sort(const RayCloud& rays, const std::vector<Record>& records,
+                                    const PartsFor& parts_for) const {
     struct Copy {
       std::uint32_t part, record;
     };
     std::vector<Copy> copies;
-    std::vector<std::uint32_t> own_part(records.size()), near;
+    std::vector<std::uint32_t> own_part(records.size());
     std::vector<std::size_t> ends(cuts_.parts() + 1);
     for (std::size_t i = 0, record = 0; i < rays.size(); ++i) {
       if (rays.bounded[i] == 0) continue;
       own_part[record] = static_cast<std::uint32_t>(cuts_.part_of(rays.ends[i]));
-      cuts_.parts_near(rays.ends[i], reach_, near);
-      for (const std::uint32_t part : near) {
+      for (const std::uint32_t part : parts_for(rays.ends[i])) {
         copies.push_back({part, static_cast<std::uint32_t>(record)});
         ++ends[part + 1];
       }
@@ -158,13 +168,27 @@ class SpilledBlocks {
     }
   }
 
+  /// `work(block, part)` for all blocks that have records of their own, before the results are computed.
+  template <class Work>
+  void visit(const Context& context, const Work& work) {
+    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
+      check_cancelled(context);
+      Block<Record> block = load(part);
+      records_.rewind(part);
+      own_.rewind(part);
+      if (has_own(block)) work(std::move(block), part);
+    }
+  }
+
   template <class Compute>
   void compute(const Context& context, const Compute& compute) {
     for (std::size_t part = 0; part < cuts_.parts(); ++part) {
       check_cancelled(context);
       Block<Record> block = load(part);
+      records_.drop(part);
+      own_.drop(part);
+      if (!has_own(block)) continue;
       const std::vector<std::uint8_t> own = block.own;
-      if (std::count(own.begin(), own.end(), 0) == static_cast<std::ptrdiff_t>(own.size())) continue;
       std::vector<Result> results = compute(context, std::move(block), reach_);
       std::size_t count = 0;
       for (std::size_t i = 0; i < own.size(); ++i)
@@ -204,9 +228,10 @@ class SpilledBlocks {
     block.own.resize(count);
     records_.read(part, block.records.data(), count * sizeof(Record));
     own_.read(part, block.own.data(), count);
-    records_.drop(part);
-    own_.drop(part);
     return block;
+  }
+  static bool has_own(const Block<Record>& block) {
+    return std::find(block.own.begin(), block.own.end(), 1) != block.own.end();
   }
 
   SpaceCuts cuts_;

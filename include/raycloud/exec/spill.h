@@ -24,7 +24,9 @@ class Spill {
   void read(std::size_t stream, void* data, std::size_t bytes);
   /// Bytes that were appended.
   [[nodiscard]] std::uint64_t size(std::size_t stream) const { return streams_[stream].size; }
-  /// Frees the memory of a stream that has been read.
+  /// The stream is read from its beginning again. Throws Error(file_access) when the disk is full.
+  void rewind(std::size_t stream);
+  /// Frees the memory of a stream that has been read and will not be again.
   void drop(std::size_t stream);
 
  private:

@@ -223,6 +223,57 @@ TEST(Transients, threadsChangeNothing) {
   }
 }
 
+/// A way of 100 m, thousands of times as long as its points are apart, that a sensor drives twice. It looks
+/// ahead and down, at boards that stand across the way every 3 m: some the first time, some the second.
+RayCloud long_way(std::size_t rays) {
+  const RandomStream random(5, "way");
+  RayCloud cloud;
+  cloud.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const double time = 200.0 * static_cast<double>(i) / static_cast<double>(rays);
+    const bool again = time >= 100.0;
+    const Eigen::Vector3d start(again ? time - 100.0 : time, 0.0, 0.6);
+    const Eigen::Vector3d way(1.0, 0.1 * random.uniform(i, 0) - 0.05, -0.4 - random.uniform(i, 1));
+    const double noise = 0.004 * (random.uniform(i, 2) + random.uniform(i, 3) - 1.0);
+    const double far = (0.6 + noise) / -way.z();
+    const double next = 3.0 * std::ceil(start.x() / 3.0);
+    const bool stands = (std::lround(next / 3.0) % 2 == 0) == again;
+    const bool on_board = stands && next - start.x() < far;
+    cloud.starts[i] = start;
+    cloud.ends[i] = start + (on_board ? next - start.x() + noise : far) * way;
+    cloud.times[i] = time;
+    cloud.bounded[i] = random.uniform(i, 4) < 0.95 ? 1 : 0;
+  }
+  return cloud;
+}
+
+TEST(Transients, memoryChangesNothing) {
+  const RayCloud way = long_way(30000);
+  for (const Merge merge : {Merge::min, Merge::max, Merge::oldest, Merge::newest})
+    for (const bool paper : {false, true}) {
+      const TransientRule rule{.merge = merge, .rays = 3.0, .paper = paper};
+      const Halves whole = halves_of(way, rule);
+      EXPECT_GT(whole.transient.size(), 100U);
+      for (const std::size_t memory : {2UL << 20, 400UL << 10}) {
+        const Halves blocks = halves_of(way, rule, {.memory = memory});
+        EXPECT_TRUE(same_bits(blocks.fixed, whole.fixed)) << static_cast<int>(merge) << memory;
+        EXPECT_TRUE(same_bits(blocks.transient, whole.transient)) << static_cast<int>(merge) << memory;
+      }
+    }
+}
+
+/// With everything in everybody's reach, and fewer rays than blocks.
+RC_GTEST_PROP(Transients, memoryChangesNothingForFewRays, (std::uint64_t seed)) {
+  const RayCloud cloud =
+      random_cloud(seed, {.rays = *rc::gen::inRange<std::size_t>(3, 200), .half_extent = 2.0, .extras = {}});
+  const TransientRule rule{.merge = *rc::gen::element(Merge::min, Merge::max, Merge::oldest, Merge::newest),
+                           .rays = *rc::gen::element(0.1, 1.0, 10.0)};
+  const Halves whole = halves_of(cloud, rule);
+  const Halves blocks = halves_of(cloud, rule, {.memory = *rc::gen::inRange<std::size_t>(1000, 20000)}, 7);
+  RC_ASSERT(same_bits(blocks.fixed, whole.fixed));
+  RC_ASSERT(same_bits(blocks.transient, whole.transient));
+}
+
 ErrorCode refusal(const RayCloud& cloud, const TransientRule& rule) {
   try {
     halves_of(cloud, rule);
