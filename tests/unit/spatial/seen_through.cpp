@@ -35,7 +35,7 @@ struct ShotsAtBalls {
       points.push_back(middle + extent * random_in_box(random, i, 0));
       if (i % 16 == 1) points.back() = points[i - 1];
     }
-    for (std::size_t i = 0; i < 200; ++i) {
+    for (std::size_t i = 0; i < 100; ++i) {
       const Eigen::Vector3d across = 1.5 * side * random_in_box(random, i, 3);
       Shot ray{middle + across, middle + (i % 2 == 0 ? 1.2 : 0.2) * side * random_in_box(random, i, 6)};
       const auto axis = static_cast<Eigen::Index>(random.below(3, i, 9));
@@ -83,7 +83,7 @@ std::size_t sum_of(const std::vector<std::uint32_t>& values) {
 }
 
 RC_GTEST_PROP(SeenThrough, CountsWhatAllPairsCount, (std::uint64_t seed)) {
-  const auto count = *rc::gen::inRange<std::size_t>(0, 400);
+  const auto count = *rc::gen::inRange<std::size_t>(0, 200);
   // In a few radii there are groups in each brick, in thousands most bricks are empty.
   const double side = std::pow(10.0, *rc::gen::inRange(0, 4));
   const double radius = std::pow(10.0, *rc::gen::inRange(-3, 1));
