@@ -23,6 +23,18 @@ constexpr double kWider = 1.6;
 
 using Move = Eigen::Vector3f;  // m
 
+/// How far the points of a leaf look for planes: the furthest of them, but for a few that are far off. m
+double reach_of_leaf(std::span<const LocalPlane> planes) {
+  constexpr float kFarOff = 1.5F;  // times the mean
+  float sum = 0.0F, furthest = 0.0F;
+  for (const LocalPlane& plane : planes)
+    sum += plane.reach;
+  const float most = kFarOff * sum / static_cast<float>(planes.size());
+  for (const LocalPlane& plane : planes)
+    if (plane.reach <= most) furthest = std::max(furthest, plane.reach);
+  return kWider * static_cast<double>(furthest);
+}
+
 /// To a height above the plane's point: along the ray where that is not too much aslant, else along the
 /// normal.
 Move move_of(const LocalPlane& plane, double height, const PackedDirection& to_sensor) {
@@ -57,7 +69,12 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   std::vector<Move> moves(tree.size(), Move::Zero());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     SurfaceFit fit(tree, planes);
+    std::size_t leaf_end = begin;
     for (std::size_t place = begin; place < end; ++place) {
+      if (place == leaf_end) {
+        leaf_end = std::min(search.leaf_of(place).end, end);
+        search.look_around(place, reach_of_leaf(std::span(planes).subspan(place, leaf_end - place)));
+      }
       const LocalPlane& plane = planes[place];
       if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
       moves[tree.index(place)] =

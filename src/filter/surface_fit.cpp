@@ -4,78 +4,95 @@
 #include <bit>
 #include <cstdint>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace ray {
 namespace {
 
-/// Sums of what single points add, in small whole parts: exact, and so the same in any order.
-class ExactSum {
- public:
-  static constexpr float kParts = 0x1p20F;
-
-  /// Each less than 32 · kParts, and less than 64 points.
-  void add(const Lanes& parts) {
-#ifdef __SSE2__
-    _mm_store_si128(reinterpret_cast<__m128i*>(sum_.data()),
-                    _mm_add_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(sum_.data())),
-                                  _mm_cvttps_epi32(_mm_load_ps(parts.data()))));
-#else
-    sum_ += parts.cast<std::int32_t>();
-#endif
-  }
-  [[nodiscard]] double value() const {
-    return static_cast<double>(sum_.cast<std::int64_t>().sum()) * (1.0 / static_cast<double>(kParts));
-  }
-
- private:
-  Eigen::Array<std::int32_t, 4, 1> sum_ = Eigen::Array<std::int32_t, 4, 1>::Zero();
-};
-
-constexpr std::size_t kLanes = 4;
+/// Sums of what single points add, in whole parts: exact, and so the same in any order.
+constexpr float kParts = 0x1p20F;
 constexpr float kLeastAlike = 0.3F;  // cosine between normals of one surface
 
-std::size_t groups_of(std::size_t points) {
-  return (points + kLanes - 1) / kLanes;
-}
-
-template <class Groups>
-void put(Groups& groups, std::size_t i, float value) {
-  groups[i / kLanes][static_cast<Eigen::Index>(i % kLanes)] = value;
-}
-
-template <class Groups>
-void put_vector(Groups& groups, std::size_t i, const Eigen::Vector3f& value) {
-  const auto lane = static_cast<Eigen::Index>(i % kLanes);
-  LanesOfVectors& group = groups[i / kLanes];
-  group.x[lane] = value.x(), group.y[lane] = value.y(), group.z[lane] = value.z();
-}
-
 /// Weighted sums over the planes, seen from the point: u and v across its normal, h along it.
-struct PlaneSums {
-  ExactSum w, h, spread2, u, v, slope_u, slope_v, uu, uv, vv, u_slope_u, v_slope_v, u_slope_v, slope2;
-
-  /// All values are so small that no sum overflows: lengths below 5 units, slopes below 4.
-  void add(const Lanes& weight, const Lanes& height, const Lanes& spread, const Lanes& at_u,
-           const Lanes& at_v, const Lanes& su, const Lanes& sv) {
-    const Lanes wu = weight * at_u, wv = weight * at_v, wsu = weight * su, wsv = weight * sv;
-    w.add(weight), h.add(weight * height), spread2.add(weight * spread);
-    u.add(wu), v.add(wv), slope_u.add(wsu), slope_v.add(wsv);
-    uu.add(wu * at_u), uv.add(wu * at_v), vv.add(wv * at_v);
-    u_slope_u.add(wu * su), v_slope_v.add(wv * sv), u_slope_v.add(wu * sv + wv * su);
-    slope2.add(wsu * su + wsv * sv);
-  }
+template <class Whole>
+struct SumsOf {
+  Whole w{}, h{}, spread2{}, u{}, v{}, slope_u{}, slope_v{}, uu{}, uv{}, vv{}, u_slope_u{}, v_slope_v{},
+      u_slope_v{}, slope2{};
 };
+using PlaneSums = SumsOf<std::int32_t>;
+
+struct Axes {
+  Eigen::Vector3f n, u, v;
+};
+
+/// So many floats, or whole numbers, at once.
+template <int kCount>
+struct Lanes {
+  using Floats [[gnu::vector_size(kCount * sizeof(float)), gnu::may_alias]] = float;
+  using Wholes [[gnu::vector_size(kCount * sizeof(float))]] = std::int32_t;
+};
+
+/// All values are so small that no sum overflows: lengths below 5 units, slopes below 4, so what is added is
+/// less than 32 parts, by 64 points at most.
+template <int kLanes>
+[[gnu::always_inline]] inline void add_planes(const SeenPlanes& planes, const Axes& axes, PlaneSums& total) {
+  using Floats = typename Lanes<kLanes>::Floats;
+  using Wholes = typename Lanes<kLanes>::Wholes;
+  const float nx = axes.n.x(), ny = axes.n.y(), nz = axes.n.z();
+  const float ux = axes.u.x(), uy = axes.u.y(), uz = axes.u.z();
+  const float vx = axes.v.x(), vy = axes.v.y(), vz = axes.v.z();
+  const Floats least = Floats{} + kLeastAlike;
+  SumsOf<Wholes> sums;
+  for (std::size_t i = 0; i < planes.size; i += kLanes) {
+    const auto& x = reinterpret_cast<const Floats&>(planes.normal_x[i]);
+    const auto& y = reinterpret_cast<const Floats&>(planes.normal_y[i]);
+    const auto& z = reinterpret_cast<const Floats&>(planes.normal_z[i]);
+    const auto& height = reinterpret_cast<const Floats&>(planes.height[i]);
+    const auto& offset_x = reinterpret_cast<const Floats&>(planes.offset_x[i]);
+    const auto& offset_y = reinterpret_cast<const Floats&>(planes.offset_y[i]);
+    const auto& offset_z = reinterpret_cast<const Floats&>(planes.offset_z[i]);
+    const auto& spread2 = reinterpret_cast<const Floats&>(planes.spread2[i]);
+    const Floats cosine = x * nx + y * ny + z * nz;
+    const Floats alike = cosine > least ? cosine : least;
+    const Floats alike2 = alike * alike, alike4 = alike2 * alike2;
+    const Floats full = alike4 * alike4 * kParts;
+    const Floats weight = cosine > least ? full : Floats{};
+    const Floats per_alike = 1.0F / alike;
+    const Floats at_x = offset_x + height * x, at_y = offset_y + height * y, at_z = offset_z + height * z;
+    const Floats at_n = at_x * nx + at_y * ny + at_z * nz;
+    const Floats at_u = at_x * ux + at_y * uy + at_z * uz, at_v = at_x * vx + at_y * vy + at_z * vz;
+    const Floats su = -(x * ux + y * uy + z * uz) * per_alike, sv = -(x * vx + y * vy + z * vz) * per_alike;
+    const Floats wu = weight * at_u, wv = weight * at_v, wsu = weight * su, wsv = weight * sv;
+    sums.w += __builtin_convertvector(weight, Wholes);
+    sums.h += __builtin_convertvector(weight * at_n, Wholes);
+    sums.spread2 += __builtin_convertvector(weight * spread2, Wholes);
+    sums.u += __builtin_convertvector(wu, Wholes);
+    sums.v += __builtin_convertvector(wv, Wholes);
+    sums.slope_u += __builtin_convertvector(wsu, Wholes);
+    sums.slope_v += __builtin_convertvector(wsv, Wholes);
+    sums.uu += __builtin_convertvector(wu * at_u, Wholes);
+    sums.uv += __builtin_convertvector(wu * at_v, Wholes);
+    sums.vv += __builtin_convertvector(wv * at_v, Wholes);
+    sums.u_slope_u += __builtin_convertvector(wu * su, Wholes);
+    sums.v_slope_v += __builtin_convertvector(wv * sv, Wholes);
+    sums.u_slope_v += __builtin_convertvector(wu * sv + wv * su, Wholes);
+    sums.slope2 += __builtin_convertvector(wsu * su + wsv * sv, Wholes);
+  }
+  for (int i = 0; i < kLanes; ++i) {
+    total.w += sums.w[i], total.h += sums.h[i], total.spread2 += sums.spread2[i];
+    total.u += sums.u[i], total.v += sums.v[i];
+    total.slope_u += sums.slope_u[i], total.slope_v += sums.slope_v[i];
+    total.uu += sums.uu[i], total.uv += sums.uv[i], total.vv += sums.vv[i];
+    total.u_slope_u += sums.u_slope_u[i], total.v_slope_v += sums.v_slope_v[i];
+    total.u_slope_v += sums.u_slope_v[i], total.slope2 += sums.slope2[i];
+  }
+}
 
 /// The height of the surface at the point, in units.
 double height_by(const PlaneSums& sums) {
   // The planes share most of their points, and so a curvature is less sure than it looks.
   constexpr double kCaution = 16.0;
-  const double weight = sums.w.value();
+  const double weight = sums.w;
   if (!(weight > 0.0)) return 0.0;
-  const auto mean = [&](const ExactSum& sum) { return sum.value() / weight; };
+  const auto mean = [&](std::int32_t sum) { return sum / weight; };
   const double u = mean(sums.u), v = mean(sums.v), su = mean(sums.slope_u), sv = mean(sums.slope_v);
   const double flat = mean(sums.h) - su * u - sv * v;
   // The rest is about the means.
@@ -89,7 +106,7 @@ double height_by(const PlaneSums& sums) {
   const double b = (u_sv * uu * vv - uv * (vv * u_su + uu * v_sv)) / (extent2 * area);
   const double a = (u_su - uv * b) / uu, c = (v_sv - uv * b) / vv;
   const double unexplained = std::max(slope2 - a * u_su - b * u_sv - c * v_sv, 0.0);
-  const double error2 = kCaution * unexplained / (extent2 * weight);
+  const double error2 = kCaution * unexplained / (extent2 * weight / static_cast<double>(kParts));
   const double curvature2 = 0.25 * (a + c) * (a + c);
   const double sure = curvature2 * curvature2, unsure = error2 * error2;
   const double trust = sure > 0.0 ? sure / (sure + unsure) : 0.0;
@@ -98,34 +115,29 @@ double height_by(const PlaneSums& sums) {
   return flat - trust * bend;
 }
 
-}  // namespace
-
-SurfaceFit::SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes)
-    : tree_(tree), planes_(planes) {
-  for (auto* vectors : {&normals_, &offsets_})
-    vectors->fill({Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
-  for (auto* lanes : {&heights_, &spreads2_})
-    lanes->fill(Lanes::Zero());
+void add_plain(const SeenPlanes& planes, const Axes& axes, PlaneSums& sums) {
+  add_planes<4>(planes, axes, sums);
 }
+#ifdef __x86_64__
+[[gnu::target("avx2")]] void add_avx2(const SeenPlanes& planes, const Axes& axes, PlaneSums& sums) {
+  add_planes<8>(planes, axes, sums);
+}
+const auto add_fast = __builtin_cpu_supports("avx2") ? add_avx2 : add_plain;
+#else
+constexpr auto add_fast = add_plain;
+#endif
+
+}  // namespace
 
 double SurfaceFit::height(std::size_t place, std::span<const Neighbour> neighbours) {
   const LocalPlane& own = planes_[place];
   take(place, own, neighbours);
-  const Eigen::Vector3f n = own.normal, along_u = n.unitOrthogonal(), along_v = n.cross(along_u);
+  Axes axes;
+  axes.n = own.normal;
+  axes.u = axes.n.unitOrthogonal();
+  axes.v = axes.n.cross(axes.u);
   PlaneSums sums;
-  for (std::size_t g = 0; g < groups_of(neighbours.size() + 1); ++g) {
-    const LanesOfVectors& normal = normals_[g];
-    const Lanes cosine = normal.dot(n);
-    // 1 where it is above, by however little, else 0.
-    const Lanes is_alike = ((cosine - kLeastAlike) * 1e30F).max(0.0F).min(1.0F);
-    const Lanes alike = cosine.max(kLeastAlike);
-    const Lanes per_alike = 1.0F / alike;
-    const LanesOfVectors at{offsets_[g].x + heights_[g] * normal.x, offsets_[g].y + heights_[g] * normal.y,
-                            offsets_[g].z + heights_[g] * normal.z};
-    const Lanes weight = is_alike * alike.square().square().square() * ExactSum::kParts;
-    sums.add(weight, at.dot(n), spreads2_[g], at.dot(along_u), at.dot(along_v),
-             -normal.dot(along_u) * per_alike, -normal.dot(along_v) * per_alike);
-  }
+  add_fast(seen_, axes, sums);
   return height_by(sums) * static_cast<double>(unit_);
 }
 
@@ -138,21 +150,27 @@ void SurfaceFit::take(std::size_t place, const LocalPlane& own, std::span<const 
                   kMostSpread2 = 16.0F;  // m²/unit² and units: the sums have that much room
   const float per_unit = 1.0F / unit_;
   const Eigen::Vector3d point = tree_.point(place);
-  // What fills up the last group has no normal, and so no weight.
-  normals_[groups_of(neighbours.size() + 1) - 1] = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
   std::size_t count = 0;
   const auto add = [&](std::size_t other) {
     const LocalPlane& plane = planes_[other];
     const Eigen::Vector3d away = tree_.point(other) - point;
-    put_vector(normals_, count, plane.normal);
-    put_vector(offsets_, count, away.cast<float>() * per_unit);
-    put(heights_, count, std::clamp(plane.height * per_unit, -kMostHeight, kMostHeight));
-    put(spreads2_, count, std::min(plane.spread2 * (per_unit * per_unit), kMostSpread2));
+    seen_.normal_x[count] = plane.normal.x();
+    seen_.normal_y[count] = plane.normal.y();
+    seen_.normal_z[count] = plane.normal.z();
+    seen_.offset_x[count] = static_cast<float>(away.x()) * per_unit;
+    seen_.offset_y[count] = static_cast<float>(away.y()) * per_unit;
+    seen_.offset_z[count] = static_cast<float>(away.z()) * per_unit;
+    seen_.height[count] = std::clamp(plane.height * per_unit, -kMostHeight, kMostHeight);
+    seen_.spread2[count] = std::min(plane.spread2 * (per_unit * per_unit), kMostSpread2);
     ++count;
   };
   add(place);
   for (const Neighbour& neighbour : neighbours)
     add(neighbour.place);
+  // What fills up the last lanes has no normal, and so no weight.
+  for (; count % SeenPlanes::kLanes != 0; ++count)
+    seen_.normal_x[count] = seen_.normal_y[count] = seen_.normal_z[count] = 0.0F;
+  seen_.size = count;
 }
 
 }  // namespace ray

@@ -17,14 +17,14 @@ struct LocalPlane {
   float reach = 0.0F;    // m, of its neighbours
 };
 
-/// Four points at a time.
-using Lanes = Eigen::Array4f;
-
-struct LanesOfVectors {
-  Lanes x, y, z;
-  [[nodiscard]] Lanes dot(const Eigen::Vector3f& other) const {
-    return x * other.x() + y * other.y() + z * other.z();
-  }
+/// Planes in columns, a whole number of lanes of them, seen from a point, in units of length.
+struct SeenPlanes {
+  static constexpr std::size_t kLanes = 8, kMost = 64;
+  using Column = std::array<float, kMost>;
+  std::size_t size = 0;
+  alignas(32) Column normal_x{}, normal_y{}, normal_z{};
+  alignas(32) Column offset_x{}, offset_y{}, offset_z{};
+  alignas(32) Column height{}, spread2{};
 };
 
 /// The surface through the planes around a point, which are a sample of its heights and slopes. Their mean
@@ -35,24 +35,21 @@ struct LanesOfVectors {
 class SurfaceFit {
  public:
   /// As many neighbours, at most.
-  static constexpr std::size_t kMost = 63;
+  static constexpr std::size_t kMost = SeenPlanes::kMost - 1;
 
-  SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes);
+  SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes) : tree_(tree), planes_(planes) {}
 
   /// Of the surface from the point, along the normal of its plane, m. Depends on the neighbours, not on their
   /// order. Precondition: the point has a plane.
   [[nodiscard]] double height(std::size_t place, std::span<const Neighbour> neighbours);
 
  private:
-  static constexpr std::size_t kGroups = (kMost + 1) / 4;
-
   void take(std::size_t place, const LocalPlane& own, std::span<const Neighbour> neighbours);
 
   const PointTree& tree_;
   std::span<const LocalPlane> planes_;
   float unit_ = 1.0F;  // m, a power of two, at most the reach
-  std::array<LanesOfVectors, kGroups> normals_, offsets_;
-  std::array<Lanes, kGroups> heights_, spreads2_;
+  SeenPlanes seen_;
 };
 
 }  // namespace ray

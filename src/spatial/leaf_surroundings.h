@@ -1,6 +1,7 @@
 #pragma once
 /// All points around a leaf, close together in memory, for the searches of its points.
 
+#include "point_sieve.h"
 #include "tree_walk.h"
 
 #include <array>
@@ -37,40 +38,34 @@ class LeafSurroundings {
   [[nodiscard]] double bound2() const { return bound2_; }
 
  private:
-  static constexpr std::size_t kRoom = 1024;  // a multiple of 32
   static constexpr std::size_t kLeaf = PointTree::kLeafPoints;
-  using Floats = std::array<float, kRoom>;
+  static_assert(kLeaf % kSieveLanes == 0);
 
-  bool gather_leaf(const TreeWalk::Leaf& leaf, float within2);
-  void measure(std::size_t self);
-  [[nodiscard]] float bound_by_others(std::size_t count) const;
-  void collect(float within, const Eigen::Vector3d* side);
+  bool gather_leaf(const TreeWalk::Leaf& leaf, const SieveBox& box);
+  void gather_directions();
+  [[nodiscard]] std::array<float, 3> middle_of(std::size_t self) const {
+    return {points_.x[self], points_.y[self], points_.z[self]};
+  }
+  [[nodiscard]] float bound_by_others(std::size_t self, std::size_t count) const;
+  void collect(std::size_t place, float within, const Eigen::Vector3d* side);
   void drop_further(std::size_t count, float within);
-  void find_bound(std::size_t count, const Eigen::Vector3d* side);
-  [[nodiscard]] std::size_t count_within(float distance2) const;
-  [[nodiscard]] float distance2_of_nearest(std::size_t count, float within2);
+  void find_bound(std::size_t place, std::size_t count, const Eigen::Vector3d* side);
+  [[nodiscard]] float distance2_of_nearest(std::size_t count, float within2) const;
   [[nodiscard]] std::span<const Neighbour> exact(std::size_t place, std::size_t count, double reach2);
 
   const PointTree& tree_;
   TreeWalk::Leaf leaf_;
-  std::array<double, 3> middle_{};
-  std::array<float, 3> half_{};  // sides of the box
   double reach_ = 0.0;
-  float slack_ = 0.0F;  // by which a distance may be wrong
-  // What was gathered, the points of the leaf first.
-  std::size_t size_ = 0;
-  alignas(32) Floats x_{}, y_{}, z_{};
-  std::array<std::uint32_t, kRoom> place_{};
+  float slack_ = 0.0F;      // by which a distance may be wrong
+  SievePoints points_;      // what was gathered, the points of the leaf first
+  bool has_sides_ = false;  // with the directions to their sensors
   // Of the points of the leaf for which all `solved_count_` nearest were found: how far those are.
   std::size_t solved_count_ = 0;
   alignas(32) std::array<float, kLeaf> solved_{};
   double bound2_ = 0.0;
   // Of the search under way.
-  alignas(32) Floats distance2_{};
-  std::size_t found_count_ = 0;
-  alignas(32) std::array<float, kRoom + 8> found2_{};
-  std::array<std::uint32_t, kRoom> found_place_{};
-  std::array<Neighbour, kRoom> found_{};
+  SievedPoints near_;
+  std::array<Neighbour, kSieveRoom> found_{};
 };
 
 }  // namespace ray

@@ -65,7 +65,7 @@ class PointTree::Builder {
     fill_buckets();
     const std::size_t count = points_.size();
     for (std::vector<double>* column : {&tree_.x_, &tree_.y_, &tree_.z_})
-      column->resize(count + 3);  // leaves are read four points at a time
+      column->resize(count + 7);  // leaves are read eight points at a time
     tree_.to_sensor_.resize(count);
     tree_.index_.resize(count);
     below_.resize(buckets_);

@@ -29,6 +29,7 @@ class TreeWalk {
 
   explicit TreeWalk(const PointTree& tree) : tree_(tree) {}
 
+  [[nodiscard]] const PointTree& tree() const { return tree_; }
   /// To the leaf of the place. True if it is another one than before.
   bool go_to(std::size_t place);
   [[nodiscard]] const Leaf& leaf() const { return leaf_; }

@@ -20,7 +20,7 @@ inline auto nearer_first(const PointTree& tree) {
   };
 }
 
-/// Searches in a tree, with the memory that they need (about 50 kB); one for each thread. Made for all points
+/// Searches in a tree, with the memory that they need (about 80 kB); one for each thread. Made for all points
 /// one after the other, in the order of the tree: what is around a leaf is gathered once for its points.
 class NeighbourSearch {
  public:
@@ -39,6 +39,16 @@ class NeighbourSearch {
   /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.
   std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
                                             const Eigen::Vector3d& normal);
+
+  /// Places [begin, end) that lie together.
+  struct Leaf {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  [[nodiscard]] Leaf leaf_of(std::size_t place);
+  /// Who knows how far the places of a leaf will have to look (m) may say so before the first is asked for,
+  /// which is faster. Changes no result.
+  void look_around(std::size_t place, double reach);
 
   [[nodiscard]] const PointTree& tree() const { return tree_; }
 
