@@ -92,7 +92,8 @@ double height_by(const PlaneSums& sums) {
   constexpr double kCaution = 16.0;
   const double weight = sums.w;
   if (!(weight > 0.0)) return 0.0;
-  const auto mean = [&](std::int32_t sum) { return sum / weight; };
+  const double per_weight = 1.0 / weight;
+  const auto mean = [&](std::int32_t sum) { return sum * per_weight; };
   const double u = mean(sums.u), v = mean(sums.v), su = mean(sums.slope_u), sv = mean(sums.slope_v);
   const double flat = mean(sums.h) - su * u - sv * v;
   // The rest is about the means.

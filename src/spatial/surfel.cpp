@@ -17,8 +17,10 @@ class ExactMoments {
     scale_ = std::ldexp(1.0, 22 - exponent);
   }
 
-  void add(const Eigen::Vector3d& offset) {
-    const double x = whole(offset.x()), y = whole(offset.y()), z = whole(offset.z());
+  /// The offsets of two points.
+  void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
+    const Pair x = whole(first.x(), second.x()), y = whole(first.y(), second.y()),
+               z = whole(first.z(), second.z());
     sum_x_ += x, sum_y_ += y, sum_z_ += z;
     xx_ += x * x, xy_ += x * y, xz_ += x * z;
     yy_ += y * y, yz_ += y * z, zz_ += z * z;
@@ -26,24 +28,28 @@ class ExactMoments {
 
   /// Of `count` points, those that were not added being at the middle.
   [[nodiscard]] Eigen::Vector3d mean(double count) const {
-    return Eigen::Vector3d(sum_x_, sum_y_, sum_z_) / (count * scale_);
+    return Eigen::Vector3d(sum_x_.sum(), sum_y_.sum(), sum_z_.sum()) / (count * scale_);
   }
   [[nodiscard]] Eigen::Matrix3d covariance(double count) const {
-    const Eigen::Vector3d sum(sum_x_, sum_y_, sum_z_);
+    const Eigen::Vector3d sum(sum_x_.sum(), sum_y_.sum(), sum_z_.sum());
+    const double xx = xx_.sum(), xy = xy_.sum(), xz = xz_.sum(), yy = yy_.sum(), yz = yz_.sum(),
+                 zz = zz_.sum();
     Eigen::Matrix3d products;
-    products << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     return (products - sum * sum.transpose() / count) / (count * scale_ * scale_);
   }
 
  private:
-  [[nodiscard]] double whole(double offset) const {
+  using Pair = Eigen::Array2d;
+  [[nodiscard]] Pair whole(double first, double second) const {
     constexpr double kRounds = 0x1.8p52;
-    return offset * scale_ + kRounds - kRounds;
+    return Pair(first, second) * scale_ + kRounds - kRounds;
   }
 
   double scale_ = 1.0;
-  double sum_x_ = 0.0, sum_y_ = 0.0, sum_z_ = 0.0;
-  double xx_ = 0.0, xy_ = 0.0, xz_ = 0.0, yy_ = 0.0, yz_ = 0.0, zz_ = 0.0;
+  Pair sum_x_ = Pair::Zero(), sum_y_ = Pair::Zero(), sum_z_ = Pair::Zero();
+  Pair xx_ = Pair::Zero(), xy_ = Pair::Zero(), xz_ = Pair::Zero();
+  Pair yy_ = Pair::Zero(), yz_ = Pair::Zero(), zz_ = Pair::Zero();
 };
 
 Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
@@ -56,8 +62,13 @@ Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neigh
     surfel.reach2 = std::max(surfel.reach2, neighbour.distance2);
   if (surfel.reach2 > 0.0) {
     ExactMoments moments(surfel.reach2);
-    for (const Neighbour& neighbour : neighbours)
-      moments.add(tree.point(neighbour.place) - middle);
+    const auto offset = [&](std::size_t i) -> Eigen::Vector3d {
+      return tree.point(neighbours[i].place) - middle;
+    };
+    std::size_t next = 0;
+    for (; next + 1 < neighbours.size(); next += 2)
+      moments.add(offset(next), offset(next + 1));
+    if (next < neighbours.size()) moments.add(offset(next), Eigen::Vector3d::Zero());
     const double count = surfel.count;
     surfel.centroid += moments.mean(count);
     const SymmetricEigen eigen = symmetric_eigen(moments.covariance(count));
