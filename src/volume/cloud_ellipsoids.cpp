@@ -1,7 +1,7 @@
 #include "cloud_ellipsoids.h"
 
-#include "read_ends.h"
 #include "mix_bits.h"
+#include "read_ends.h"
 
 #include <raycloud/exec/parallel.h>
 #include <raycloud/spatial/surfel.h>

@@ -1,8 +1,8 @@
 #include "cloud_ellipsoids.h"
-#include "read_ends.h"
 #include "each_chunk.h"
 #include "judged_block.h"
 #include "judgement_cells.h"
+#include "read_ends.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/exec/blocks.h>

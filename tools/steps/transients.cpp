@@ -43,7 +43,10 @@ scanner and some centimetres of error in the map do no harm.)",
                          "by itself",
                  .advanced = true}},
     .writes = "CLOUD_fixed.ply and CLOUD_transient.ply",
-    .memory = "120 bytes a ray, whatever --memory allows.",
+    .memory =
+        "130 bytes a ray. Where that is more than --memory allows, ends go to temporary files in TMPDIR or "
+        "/var/tmp, 33 bytes each, some several times, and the cloud is read twice for each block of "
+        "space; the result is the same. What lies some metres around a block takes memory too.",
     .see_also = {"raydenoise", "raycombine", "raysplit"}};
 
 TransientRule rule_of(const Match& match) {
