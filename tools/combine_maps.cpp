@@ -57,7 +57,8 @@ struct MergedFiles {
 
 MergedFiles merged_files(const cli::Match& match, const std::vector<std::string>& inputs, bool differences) {
   const std::filesystem::path& input = inputs.front();
-  MergedFiles files{{cli::main_output(match, input, "_combined")}};
+  MergedFiles files;
+  files.names.push_back(cli::main_output(match, input, "_combined"));
   for (const std::string& file : inputs) {
     if (!same_file(file, files.names.front())) continue;
     files.in_place = true;

@@ -34,6 +34,30 @@ RC_GTEST_PROP(CombinedSource, HasEveryRayOfEveryCloudInOrder, ()) {
   }
 }
 
+/// One cloud after the other is all of them, as often as they are read, in any order.
+TEST(CombinedSource, EachCloudAloneHasTheColumnsOfAll) {
+  std::vector<RayCloud> clouds;
+  clouds.push_back(random_cloud(1, {.rays = 30, .extras = {{"a", ScalarType::uint16}}}));
+  clouds.push_back(RayCloud());
+  clouds.push_back(
+      random_cloud(2, {.rays = 20, .extras = {{"b", ScalarType::int8}, {"a", ScalarType::int16}}}));
+  CombinedSource source = combined(clouds, 7);
+  std::vector<std::unique_ptr<RaySource>> each;
+  for (std::size_t i = 0; i < source.cloud_count(); ++i)
+    each.push_back(source.alone(i));
+  for (int times = 0; times < 2; ++times) {
+    RayCloud all;
+    all.set_schema(source.info().extras);
+    for (std::size_t i = 0; i < each.size(); ++i) {
+      EXPECT_EQ(each[i]->info().extras, source.info().extras);
+      EXPECT_EQ(each[i]->info().ray_count, clouds[i].size());
+      all.append(read_all({.threads = 2}, *each[i]));
+      each[i]->rewind();
+    }
+    EXPECT_TRUE(same_bits(all, read(source, 2)));
+  }
+}
+
 TEST(CombinedSource, FillsColumnsThatAreMissingAndWidensTypes) {
   std::vector<RayCloud> clouds;
   clouds.push_back(
