@@ -108,8 +108,10 @@ void JudgementCells::find_parts(double range_noise) {
     for (const std::uint32_t part : cells_[i].own_parts)
       of_parts[part].push_back(i);
   std::vector<std::uint32_t> seen(cells_.size(), ~std::uint32_t{0});
-  for (auto& [part, region] : of_parts) {
-    const auto reach_from = [&, part = part](std::size_t begin, std::size_t end, const auto& edges) {
+  for (auto& of_part : of_parts) {
+    const std::uint32_t part = of_part.first;
+    std::vector<std::uint32_t>& region = of_part.second;
+    const auto reach_from = [&](std::size_t begin, std::size_t end, const auto& edges) {
       for (std::size_t at = begin; at < end; ++at)
         for (const std::uint32_t other : edges[region[at]])
           if (std::exchange(seen[other], part) != part) region.push_back(other);
