@@ -248,13 +248,13 @@ RayCloud long_way(std::size_t rays) {
 }
 
 TEST(Transients, memoryChangesNothing) {
-  const RayCloud way = long_way(30000);
+  const RayCloud way = long_way(15000);
   for (const Merge merge : {Merge::min, Merge::max, Merge::oldest, Merge::newest})
     for (const bool paper : {false, true}) {
       const TransientRule rule{.merge = merge, .rays = 3.0, .paper = paper};
       const Halves whole = halves_of(way, rule);
       EXPECT_GT(whole.transient.size(), 100U);
-      for (const std::size_t memory : {2UL << 20, 400UL << 10}) {
+      for (const std::size_t memory : {1UL << 20, 200UL << 10}) {
         const Halves blocks = halves_of(way, rule, {.memory = memory});
         EXPECT_TRUE(same_bits(blocks.fixed, whole.fixed)) << static_cast<int>(merge) << memory;
         EXPECT_TRUE(same_bits(blocks.transient, whole.transient)) << static_cast<int>(merge) << memory;
