@@ -41,7 +41,7 @@ std::string as_text(const CloudComparison& comparison) {
   std::string text = "                      rays       area, m2     volume, m3\n";
   for (const auto& [kind, name] : kKinds) {
     const DifferenceTotals& totals = comparison.of(kind);
-    text += row(name, {cli::grouped(totals.rays), fixed("%.3f", totals.area), fixed("%.3f", totals.volume)});
+    text += row(name, {cli::grouped(totals.rays), fixed("%.3f", totals.area), fixed("%.4f", totals.volume)});
   }
   text += "distance    " + fixed("%.4g m", comparison.distance) + "\n";
   text += "similarity  ";

@@ -56,7 +56,7 @@ with the keys `same`, `removed`, `added` and `unobserved`, each with `rays`, `ar
                  .fallback = "10",
                  .advanced = true}},
     .writes = "CLOUD1_diff.ply, after the name of the first cloud, and a table to standard output",
-    .memory = "Up to 130 bytes a ray, whatever --memory allows.",
+    .memory = "140 bytes for each ray of the larger cloud, whatever --memory allows.",
     .see_also = {"raycombine", "raytransients", "rayinfo"}};
 
 bool same_place(const path& a, const path& b) {
@@ -134,6 +134,7 @@ void run(const Match& match, Session& session) {
                       .rays = static_cast<double>(match.integer("--rays"))});
   const ray::StreamCounts counts = write(comparison, infos, sources, outputs, session);
   session.print(match.has("--json") ? ray::tools::as_json(comparison) : ray::tools::as_text(comparison));
+  session.view(outputs.front());
   if (match.has("--json")) return;
   ray::tools::note_dropped(session, comparison.dropped);
   session.summary({.rays_in = counts.rays_in, .rays_out = counts.rays_out, .files = outputs});

@@ -9,6 +9,7 @@
 #include <raycloud/synth/scene_caster.h>
 #include <raycloud/synth/scenes.h>
 #include <raycloud/synth/simulate.h>
+#include <raycloud/volume/compare_clouds.h>
 #include <raycloud/volume/free_space.h>
 #include <raycloud/volume/merge_clouds.h>
 
@@ -163,6 +164,39 @@ std::pair<double, double> kept_and_gone(const Parts& stays, const Parts& goes) {
   return {percent(stays.others, goes.others), percent(goes.marked, stays.marked)};
 }
 
+/// What comparing calls a difference: of ends on what is the same in both, of changed ones that enough rays
+/// tell of, and of changed ones that no ray tells of.
+void difference_row(const std::string& name, const ray::RayCloud& first, const ray::RayCloud& second,
+                    double least_found) {
+  ray::MemorySource a(first), b(second);
+  const ray::CloudComparison comparison = compare_clouds({}, a, b, {.rays = kUsualNumber});
+  double same[2]{}, seen[2]{}, hidden[2]{};
+  for (std::size_t cloud = 0; cloud < 2; ++cloud) {
+    const ray::RayCloud& rays = cloud == 0 ? first : second;
+    const auto crossings = rays.extra("crossings")->values<std::uint16_t>();
+    const auto changed_ends = rays.extra("changed")->values<std::uint8_t>();
+    for (std::size_t i = 0, next = 0; i < rays.size(); ++i) {
+      if (rays.bounded[i] == 0) continue;
+      const ray::Difference difference = comparison.clouds[cloud].differences[next++];
+      const bool different = difference == ray::Difference::removed || difference == ray::Difference::added;
+      if (changed_ends[i] == 0)
+        ++same[different];
+      else if (crossings[i] >= kSeenThroughBy)
+        ++seen[different];
+      else if (crossings[i] == 0)
+        ++hidden[different];
+    }
+  }
+  const auto percent = [](const double(&of)[2]) {
+    return of[0] + of[1] > 0.0 ? 100.0 * of[1] / (of[0] + of[1]) : 0.0;
+  };
+  const bool met = percent(same) <= 0.1 && percent(seen) >= least_found;
+  std::printf("| %s, differences | | %.3f, %.2f, %.2f; %.4f | | %s |\n", name.c_str(), percent(same),
+              percent(seen), percent(hidden), comparison.similarity.value_or(0.0),
+              least_found > 0.0 ? verdict("same ≤ 0.1, changed ≥ 95", met).c_str() : " |");
+  std::fflush(stdout);
+}
+
 void merge_rows(const HowScanned& how, const ray::Scene& scene, ray::SceneLabel label, double least_gone) {
   const WorldPair pair = changed(scene, label);
   ray::RayCloud first = scan_of(pair.first, pair.only_second, label, how, 0.0, 1);
@@ -219,6 +253,7 @@ void merge_rows(const HowScanned& how, const ray::Scene& scene, ray::SceneLabel 
   row("min, --paper", {.merge = ray::CloudMerge::min, .paper = true}, false, ends);
   row("max", {.merge = ray::CloudMerge::max}, false, rays);
   row("newest", {.merge = ray::CloudMerge::newest}, false, older_ends);
+  difference_row(how.name, first, second, least_gone);
 }
 
 }  // namespace
@@ -228,7 +263,9 @@ void print_merging() {
       "\nMerging two scans of a world in which things have changed places: %% of what did not change that "
       "stays, and of what did that goes. For min these are points, the latter those that %d rays of the other "
       "scan went through and on for 5 cm; for newest the same of the older scan; for max rays, the latter "
-      "those that go through a thing which only the other scan has\n\n| scans |",
+      "those that go through a thing which only the other scan has. For differences: %% of what comparing calls "
+      "different, of points that did not change, of those that did as for min, and of those that did and that no "
+      "ray of the other scan went through; and the similarity\n\n| scans |",
       kSeenThroughBy);
   for (const double n : kMergeNumbers)
     std::printf(" n = %.0f |", n);

@@ -15,8 +15,7 @@ namespace ray {
 
 struct DifferenceRule {
   double distance = 0.0;  ///< m; ends with one of the other cloud that near are the same. 0: usual_distance()
-  double rays =
-      10.0;  ///< above 0; so many rays of the other cloud must see through a place, as for raycombine
+  double rays = 10.0;     ///< above 0; so many rays must see through a place, as for merging
 };
 
 /// Three times the larger of two point spacings (m), at least 5 cm: points of one surface, which two scans do
@@ -70,9 +69,10 @@ struct CloudComparison {
 /// cloud, within 32 spacings: true on average whatever the density. One with fewer neighbours has as many as
 /// it has; one with none, a square as wide as the distance.
 ///
-/// Reads each cloud twice, and up to four times more where there are differences. Neighbourhood shape, in
-/// memory: O(n log n), 1.5 µs of one core a ray where nothing is different, else 4.5; 130 bytes a ray. The
-/// result does not depend on threads, nor, but for rounding of areas, on the order of the rays.
+/// Reads each cloud twice, and four times more where there are differences. Neighbourhood shape, in memory:
+/// O(n log n), 1 µs of one core a ray where nothing is different, else 4.5; 140 bytes for each ray of the
+/// larger cloud. The result does not depend on threads, and on the order of the rays only as far as samples
+/// of large clouds do, from which come spacing and noise, and the rounding of areas.
 ///
 /// Throws Error(usage) if the distance is below 0 or the rays are not above 0, Error(out_of_range) if the
 /// distance is too small for the coordinates (2^62 of it).
