@@ -70,6 +70,7 @@ void run(const Match& match, Session& session) {
   }
   if (match.usage() != "list") {
     const std::string& typed = match.text("COMMAND");
+    if (typed == "git") match.reject("COMMAND", "git wants to be told one thing: install or uninstall");
     match.reject("COMMAND", "there is no command " + typed + did_you_mean(typed, names));
   }
   session.print(two_columns(rows) +

@@ -1,21 +1,6 @@
 # A board stands before a wall in one scan and not in another: what each word takes out, and what is said.
-scan() {
-  {
-    ply_header 10000 "${ray_properties[@]}" 'uchar mine'
-    awk -v board="$1" -v begin="$2" 'BEGIN {
-      for (i = 0; i < 10000; ++i) {
-        x = -2 + 4 * ((i + begin) * 0.754877666 % 1)
-        z = 3 * ((i + begin) * 0.569840291 % 1)
-        on = board && x > -1 && x < 1 && z > 1 && z < 2
-        y = on ? 4 : 8
-        printf "%.4f %.4f %.4f %.4f %.4f %.4f %.4f 9 9 9 %d %d\n", x * y / 8, y, z * y / 8, begin + i / 400,
-          -x * y / 8, -y, -z * y / 8, i % 50 == 49 ? 0 : 255, on
-      }
-    }'
-  } >"$3"
-}
-scan 0 0 monday.ply
-scan 1 86400 tuesday.ply
+board_scan 0 0 monday.ply mine
+board_scan 1 86400 tuesday.ply mine
 for kind in min max oldest newest order; do
   raycombine $kind monday.ply tuesday.ply 10 rays | sed 's/, wrote .*//'
   rayinfo monday_differences.ply | grep -E '^(rays|time|extra column)'

@@ -1,21 +1,6 @@
 # A board stands before a wall in one scan and not in another; there is nothing but sky beside the wall.
-scan() {
-  {
-    ply_header 10000 "${ray_properties[@]}" "uchar $4"
-    awk -v board="$1" -v begin="$2" 'BEGIN {
-      for (i = 0; i < 10000; ++i) {
-        x = -2 + 4 * ((i + begin) * 0.754877666 % 1)
-        z = 3 * ((i + begin) * 0.569840291 % 1)
-        on = board && x > -1 && x < 1 && z > 1 && z < 2
-        y = on ? 4 : 8
-        printf "%.4f %.4f %.4f %.4f %.4f %.4f %.4f 90 60 30 %d %d\n", x * y / 8, y, z * y / 8, begin + i / 400,
-          -x * y / 8, -y, -z * y / 8, i % 50 == 49 ? 0 : 255, on
-      }
-    }'
-  } >"$3"
-}
-scan 0 0 monday.ply first
-scan 1 86400 tuesday.ply second
+board_scan 0 0 monday.ply first
+board_scan 1 86400 tuesday.ply second
 raydiff monday.ply tuesday.ply | sed 's/, wrote .*//'
 raydiff tuesday.ply monday.ply -o back.ply --distance 20cm | sed 's/, wrote .*//'
 # One cloud of both, with the columns of both, or one for each with its own; nothing of a ray is lost.
