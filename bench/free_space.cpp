@@ -120,6 +120,6 @@ int main(int argc, char** argv) {
   std::printf(" walk");
   spent(counted, walked);
   std::printf(" %.2f M rays/s (bar 2)\n", count / (walked.wall - counted.wall) / 1e6);
-  print_merge(context, rays);
+  if (argc < 4) print_merge(context, rays);
   return 0;
 }

@@ -71,7 +71,8 @@ bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Ne
 /// More of the nearest than a surfel has, and from these, nearly always, the nearest of any side.
 class WideNeighbours {
  public:
-  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule)
+  /// `nearest` is the surfel of as many as the rule says, of any side.
+  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, const Surfel& nearest)
       : search_(search), place_(place), rule_(rule) {
     found_ = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
     std::copy(found_.begin(), found_.end(), all_.begin());
@@ -81,6 +82,9 @@ class WideNeighbours {
       const auto at = static_cast<Eigen::Index>(i);
       x_[at] = d[0], y_[at] = d[1], z_[at] = d[2];
     }
+    // Where all are of a side, the nearest of that side are the nearest.
+    constexpr std::uint64_t kAll = ~std::uint64_t{0};
+    if (count_ > 0) known_[known_count_++] = {kAll >> (64 - count_), nearest};
   }
 
   /// All, as long as they were the last that were searched; none after that.
@@ -98,8 +102,8 @@ class WideNeighbours {
       return surfel_of(search_.tree(), place_,
                        search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side));
     }
-    Known& known = known_[known_count_++ % known_.size()];
-    known_count_ = std::min(known_count_, known_.size());
+    Known& known = known_[std::min(known_count_, known_.size() - 1)];
+    known_count_ = std::min(known_count_ + 1, known_.size());
     known = {facing, surfel_of(search_.tree(), place_, nearest_of(facing))};
     return known.surfel;
   }
@@ -167,7 +171,7 @@ class WideNeighbours {
   std::size_t count_;
   std::array<Neighbour, kMost> all_, of_side_;
   Doubles x_ = Doubles::Zero(), y_ = x_, z_ = x_;
-  std::array<Known, 2> known_;
+  std::array<Known, 3> known_;
   std::size_t known_count_ = 0;
 };
 
@@ -178,7 +182,7 @@ SurfelOf surfel_of_thick(NeighbourSearch& search, std::size_t place, const Surfe
                          const Surfel& nearest, bool from_behind) {
   constexpr double kFlatEnough = 0.4;  // for that many
   constexpr double kClearly = 0.25;
-  WideNeighbours neighbours(search, place, rule);
+  WideNeighbours neighbours(search, place, rule, nearest);
   const Surfel wide = neighbours.surfel();
   const Eigen::Vector3d side =
       is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(search.tree().to_sensor(place));
