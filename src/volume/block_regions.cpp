@@ -1,0 +1,93 @@
+#include "block_regions.h"
+
+#include <algorithm>
+
+namespace ray {
+namespace {
+
+/// For each ellipsoid of a group, at most.
+constexpr std::size_t kMemberBytes = 180;
+
+}  // namespace
+
+BlockRegions::BlockRegions(const Context& context, EllipsoidBlocks& blocks,
+                           const std::function<std::vector<RegionSeed>(std::size_t part)>& seeds_of)
+    : blocks_(blocks) {
+  const std::size_t memory = memory_budget(context);
+  std::vector<CellState> states(blocks.cells().size());
+  for (std::size_t part = 0; part < blocks.parts(); ++part) {
+    if (blocks.size(part) == 0) continue;
+    const std::vector<RegionSeed> seeds = seeds_of(part);
+    const std::vector<PackedEllipsoid> ellipsoids = blocks.load(part);
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      if (!is_awake(seeds[i])) continue;
+      CellState& state = states[ellipsoids[i].cell];
+      state.awake_semi = std::max(state.awake_semi, RegionCells::semi_axis_within(unpacked(ellipsoids[i])));
+      state.has_evidence = state.has_evidence || seeds[i].own > 0.0F;
+      state.is_source = state.is_source || is_source(seeds[i]);
+    }
+  }
+  groups_ = blocks.cells().groups(states, memory / kMemberBytes);
+  if (groups_.count == 0) return;
+  members_ = std::make_unique<SpilledRows<Member>>(groups_.count, memory / 64);
+  scores_ = std::make_unique<SpilledRows<float>>(groups_.count, memory / 64);
+  for (std::size_t part = 0; part < blocks.parts(); ++part) {
+    if (blocks.size(part) == 0) continue;
+    check_cancelled(context);
+    send(part, seeds_of(part));
+  }
+  for (std::size_t group = 0; group < groups_.count; ++group) {
+    check_cancelled(context);
+    judge(context, group);
+  }
+  members_.reset();
+}
+
+void BlockRegions::send(std::size_t part, const std::vector<RegionSeed>& seeds) {
+  const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
+  for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
+    const std::uint32_t cell = ellipsoids[i].cell;
+    for (const std::uint32_t group : groups_.needed_by[cell]) {
+      const Member member{ellipsoids[i], seeds[i], groups_.owner[cell] == group ? 1U : 0U};
+      members_->append(group, std::span(&member, 1));
+    }
+  }
+}
+
+void BlockRegions::judge(const Context& context, std::size_t group) {
+  const std::vector<Member> members = members_->read_all(group);
+  members_->drop(group);
+  const std::unique_ptr<EllipsoidTree> tree = tree_of(
+      context, members.size(), [&](std::size_t i) -> const PackedEllipsoid& { return members[i].ellipsoid; });
+  std::vector<RegionSeed> seeds(members.size());
+  std::vector<std::uint32_t> owned;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    seeds[tree->slot(i)] = members[i].seed;
+    if (members[i].owned != 0) owned.push_back(tree->slot(i));
+  }
+  const std::vector<float> of_slots =
+      transient_regions(context, *tree, [&](std::size_t slot) { return seeds[slot]; });
+  std::vector<float> scores(owned.size());
+  std::transform(owned.begin(), owned.end(), scores.begin(),
+                 [&](std::uint32_t slot) { return of_slots[slot]; });
+  scores_->append(group, scores);
+}
+
+std::vector<float> BlockRegions::scores(std::size_t part) {
+  std::vector<float> scores(blocks_.size(part));
+  if (groups_.count == 0 || scores.empty()) return scores;
+  const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
+  std::vector<std::uint32_t> groups, which;
+  for (std::uint32_t i = 0; i < ellipsoids.size(); ++i) {
+    const std::uint32_t owner = groups_.owner[ellipsoids[i].cell];
+    if (owner == CellGroups::kNone) continue;
+    groups.push_back(owner);
+    which.push_back(i);
+  }
+  const std::span<const float> taken = scores_->take(groups);
+  for (std::size_t i = 0; i < which.size(); ++i)
+    scores[which[i]] = taken[i];
+  return scores;
+}
+
+}  // namespace ray

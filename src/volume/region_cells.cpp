@@ -1,0 +1,101 @@
+#include "region_cells.h"
+
+#include "mix_bits.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace ray {
+
+std::size_t RegionCells::Hash::operator()(const Key& key) const {
+  std::uint64_t hash = 0;
+  for (const std::int64_t at : key)
+    hash = mix_bits(hash + static_cast<std::uint64_t>(at));
+  return hash;
+}
+
+double RegionCells::width_of(std::int64_t level) {
+  return std::ldexp(2.0, static_cast<int>(level));
+}
+
+float RegionCells::semi_axis_within(const Ellipsoid& ellipsoid) {
+  constexpr double kRounding = 1.001, kThinnest = 1e-6;
+  // The norm of a matrix is no less than its largest eigenvalue.
+  const double norm = Eigen::Matrix3d(ellipsoid.shape.inverse()).norm();
+  return static_cast<float>(kRounding * std::sqrt(norm) + kThinnest);
+}
+
+std::uint32_t RegionCells::add(const Eigen::Vector3d& centre, float semi_axis) {
+  constexpr double kFar = 9e18;
+  Key key{static_cast<std::int64_t>(std::ceil(std::log2(semi_axis)))};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = centre[static_cast<Eigen::Index>(axis)] / width_of(key[0]);
+    key[axis + 1] = static_cast<std::int64_t>(std::clamp(std::floor(at), -kFar, kFar));
+  }
+  if (cells_.empty() || cells_[last_].key != key) {
+    const auto [at, is_new] = numbers_.try_emplace(key, static_cast<std::uint32_t>(cells_.size()));
+    if (is_new) cells_.emplace_back().key = key;
+    last_ = at->second;
+  }
+  Cell& cell = cells_[last_];
+  cell.semi = std::max(cell.semi, semi_axis);
+  ++cell.count;
+  return last_;
+}
+
+double RegionCells::gap_between(const Key& a, const Key& b) {
+  const double of_a = width_of(a[0]), of_b = width_of(b[0]);
+  double gap2 = 0.0;
+  for (std::size_t axis = 1; axis < a.size(); ++axis) {
+    const double low_a = static_cast<double>(a[axis]) * of_a, low_b = static_cast<double>(b[axis]) * of_b;
+    const double gap = std::max({0.0, low_b - (low_a + of_a), low_a - (low_b + of_b)});
+    gap2 += gap * gap;
+  }
+  return std::sqrt(gap2);
+}
+
+/// Of two ellipsoids of which one holds the other's centre, the centres are no further apart than the larger
+/// one's semi-axis. So each cell looks for those as large as it is, and larger.
+void RegionCells::close() {
+  std::vector<std::int64_t> levels;
+  for (const Cell& cell : cells_)
+    if (std::find(levels.begin(), levels.end(), cell.key[0]) == levels.end()) levels.push_back(cell.key[0]);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+    const Key& from = cells_[i].key;
+    for (const std::int64_t level : levels) {
+      if (level < from[0]) continue;
+      const double width = width_of(level), own_width = width_of(from[0]);
+      std::array<std::int64_t, 3> low{}, high{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // The longest semi-axis there is half a cube.
+        const double at = static_cast<double>(from[axis + 1]) * own_width;
+        low[axis] = static_cast<std::int64_t>(std::floor((at - 0.5 * width) / width));
+        high[axis] = static_cast<std::int64_t>(std::floor((at + own_width + 0.5 * width) / width));
+      }
+      for (std::int64_t x = low[0]; x <= high[0]; ++x)
+        for (std::int64_t y = low[1]; y <= high[1]; ++y)
+          for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+            const auto other = numbers_.find(Key{level, x, y, z});
+            if (other == numbers_.end()) continue;
+            const double reach = static_cast<double>(std::max(cells_[i].semi, cells_[other->second].semi));
+            if (!(gap_between(from, other->first) <= reach)) continue;
+            pairs.emplace_back(i, other->second);
+            if (level != from[0]) pairs.emplace_back(other->second, i);
+          }
+    }
+  }
+  first_overlap_.assign(cells_.size() + 1, 0);
+  for (const auto& pair : pairs)
+    ++first_overlap_[pair.first + 1];
+  for (std::size_t i = 0; i < cells_.size(); ++i)
+    first_overlap_[i + 1] += first_overlap_[i];
+  overlaps_.resize(pairs.size());
+  std::vector<std::size_t> next(first_overlap_.begin(), first_overlap_.end() - 1);
+  for (const auto& pair : pairs)
+    overlaps_[next[pair.first]++] = pair.second;
+  numbers_ = {};
+}
+
+}  // namespace ray

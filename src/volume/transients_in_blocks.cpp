@@ -1,0 +1,177 @@
+#include "transients_in_blocks.h"
+
+#include "block_regions.h"
+#include "count_rule.h"
+#include "crossing_rays.h"
+#include "each_chunk.h"
+#include "ellipsoid_blocks.h"
+#include "write_judged.h"
+
+#include <raycloud/core/error.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace ray {
+namespace {
+
+/// By the slots of a tree what is by the numbers of its ellipsoids.
+template <class Value>
+std::vector<Value> by_slot(const EllipsoidTree& tree, const std::vector<Value>& by_number) {
+  std::vector<Value> values(by_number.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[tree.slot(i)] = by_number[i];
+  return values;
+}
+template <class Value>
+std::vector<Value> by_number(const EllipsoidTree& tree, const std::vector<Value>& by_slot) {
+  std::vector<Value> values(by_slot.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = by_slot[tree.slot(i)];
+  return values;
+}
+
+std::vector<std::uint32_t> row_numbers(const RayCloud& rays, const RawChunk& raw) {
+  std::vector<std::uint32_t> numbers(rays.size());
+  std::iota(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(raw.first_row));
+  return numbers;
+}
+
+class TransientBlocks {
+ public:
+  TransientBlocks(const Context& context, RaySource& source, const ReadEnds& ends, const JudgeRule& rule)
+      : context_(context),
+        memory_(memory_budget(context)),
+        rule_(rule),
+        sides_(sides_of(rule.transients.merge)),
+        blocks_(context, source, ends, kJudgedPointBytes),
+        evidence_(blocks_.parts(), memory_ / 64),
+        judged_(blocks_.parts(), memory_ / 64) {
+    rule_.counting = count_rule(rule.transients.paper, blocks_.range_noise());
+    rays_ = std::make_unique<CrossingRays>(blocks_.boxes(), memory_ / 16);
+    rays_->add(context, source, row_numbers);
+    if (sides_.passes) passes_.resize(ends.rows);
+  }
+
+  void count() {
+    each_part([&](std::size_t part) {
+      const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
+      const std::unique_ptr<RaySource> rays = rays_->source(part);
+      evidence_.append(
+          part, by_number(*tree, count_evidence(context_, *rays, *tree, rule_, blocks_.boxes()[part])));
+      if (!sides_.passes) rays_->drop(part);
+    });
+    if (!sides_.passes) rays_.reset();
+  }
+
+  void judge() {
+    const std::unique_ptr<BlockRegions> of_ends = regions(sides_.ends), of_passes = regions(sides_.passes);
+    each_part([&](std::size_t part) {
+      const std::vector<Evidence> evidence = evidence_.load(part);
+      evidence_.drop(part);
+      const std::vector<float> ends = scores(part, evidence, sides_.ends, of_ends.get());
+      std::vector<float> passes = scores(part, evidence, sides_.passes, of_passes.get());
+      spare_passes(ends, passes);
+      std::vector<JudgedEnd> judged(evidence.size());
+      for (std::size_t i = 0; i < judged.size(); ++i)
+        judged[i] = judged_end(evidence[i], ends.empty() ? 0.0F : ends[i]);
+      judged_.append(part, judged);
+      if (std::any_of(passes.begin(), passes.end(), [](float score) { return score > 0.0F; }))
+        judge_passes(part, evidence, passes);
+    });
+    rays_.reset();
+  }
+
+  TransientCounts write(RaySource& source, RaySink& fixed, RaySink& transient) {
+    struct Where {
+      std::uint64_t first_row = 0;
+      std::vector<std::uint32_t> parts;
+    };
+    return write_judged(
+        context_, source, fixed, transient, rule_.transients,
+        [&](const RayCloud& rays, const RawChunk& raw) {
+          Where where{raw.first_row, {}};
+          for (std::size_t i = 0; i < rays.size(); ++i)
+            if (rays.bounded[i] != 0)
+              where.parts.push_back(static_cast<std::uint32_t>(blocks_.part_of(rays.ends[i])));
+          return where;
+        },
+        [&](const RayCloud& rays, const Where& where) {
+          return JudgedChunk{judged_.take(where.parts),
+                             passes_.empty()
+                                 ? std::span<const float>()
+                                 : std::span<const float>(passes_).subspan(where.first_row, rays.size())};
+        });
+  }
+
+ private:
+  template <class Work>
+  void each_part(const Work& work) {
+    for (std::size_t part = 0; part < blocks_.parts(); ++part) {
+      if (blocks_.size(part) == 0) continue;
+      check_cancelled(context_);
+      work(part);
+    }
+  }
+
+  std::unique_ptr<BlockRegions> regions(const std::optional<Contradiction>& which) {
+    if (!which || rule_.transients.paper) return nullptr;
+    return std::make_unique<BlockRegions>(context_, blocks_, [&](std::size_t part) {
+      const std::vector<Evidence> evidence = evidence_.load(part);
+      std::vector<RegionSeed> seeds(evidence.size());
+      parallel_for(context_, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          seeds[i] = region_seed(evidence[i], *which);
+      });
+      return seeds;
+    });
+  }
+
+  static std::vector<float> scores(std::size_t part, const std::vector<Evidence>& evidence,
+                                   const std::optional<Contradiction>& which, BlockRegions* regions) {
+    if (!which) return {};
+    if (regions != nullptr) return regions->scores(part);
+    std::vector<float> of_paper(evidence.size());
+    std::transform(evidence.begin(), evidence.end(), of_paper.begin(),
+                   [&](const Evidence& of_end) { return paper_score(of_end, *which); });
+    return of_paper;
+  }
+
+  void judge_passes(std::size_t part, const std::vector<Evidence>& evidence,
+                    const std::vector<float>& scores) {
+    const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
+    const std::vector<Evidence> of_slots = by_slot(*tree, evidence);
+    const PassJudge judge(*tree, of_slots, by_slot(*tree, scores), rule_);
+    const std::unique_ptr<RaySource> source = rays_->source(part);
+    each_chunk(context_, *source, [&](const RayCloud& rays) {
+      const std::vector<float> of_chunk = judge.judge(rays);
+      const std::span<const std::uint32_t> rows = numbers_of(rays);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        passes_[rows[i]] = std::max(passes_[rows[i]], of_chunk[i]);
+    });
+  }
+
+  const Context& context_;
+  std::size_t memory_;
+  JudgeRule rule_;
+  Sides sides_;
+  EllipsoidBlocks blocks_;
+  std::unique_ptr<CrossingRays> rays_;
+  SpilledRows<Evidence> evidence_;
+  SpilledRows<JudgedEnd> judged_;
+  std::vector<float> passes_;  ///< by row of the cloud: empty if no ray goes for what it passed
+};
+
+}  // namespace
+
+TransientCounts split_in_blocks(const Context& context, RaySource& source, RaySink& fixed, RaySink& transient,
+                                const ReadEnds& ends, JudgeRule rule) {
+  constexpr std::uint64_t kMostRows = 0xffffffff;
+  if (ends.rows > kMostRows) throw Error(ErrorCode::out_of_range, "more than 4 billion rays");
+  TransientBlocks blocks(context, source, ends, rule);
+  blocks.count();
+  blocks.judge();
+  return blocks.write(source, fixed, transient);
+}
+
+}  // namespace ray
