@@ -6,47 +6,49 @@ namespace ray {
 namespace {
 
 /// For each ellipsoid of a group, at most.
-constexpr std::size_t kMemberBytes = 180;
+constexpr std::size_t kMemberBytes = 165;
 
 }  // namespace
 
-BlockRegions::BlockRegions(const Context& context, EllipsoidBlocks& blocks,
-                           const std::function<std::vector<RegionSeed>(std::size_t part)>& seeds_of)
-    : blocks_(blocks) {
-  const std::size_t memory = memory_budget(context);
-  std::vector<CellState> states(blocks.cells().size());
-  for (std::size_t part = 0; part < blocks.parts(); ++part) {
-    if (blocks.size(part) == 0) continue;
-    const std::vector<RegionSeed> seeds = seeds_of(part);
-    const std::vector<PackedEllipsoid> ellipsoids = blocks.load(part);
-    for (std::size_t i = 0; i < seeds.size(); ++i) {
-      if (!is_awake(seeds[i])) continue;
-      CellState& state = states[ellipsoids[i].cell];
-      state.awake_semi = std::max(state.awake_semi, RegionCells::semi_axis_within(unpacked(ellipsoids[i])));
-      state.has_evidence = state.has_evidence || seeds[i].own > 0.0F;
-      state.is_source = state.is_source || is_source(seeds[i]);
-    }
+BlockRegions::BlockRegions(EllipsoidBlocks& blocks) : blocks_(blocks), states_(blocks.cells().size()) {}
+
+void BlockRegions::see(std::size_t part, std::span<const RegionSeed> seeds,
+                       std::span<const PackedEllipsoid> ellipsoids) {
+  const std::vector<std::uint32_t> cells = blocks_.cells_of(part);
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (!is_awake(seeds[i])) continue;
+    CellState& state = states_[cells[i]];
+    state.awake_semi = std::max(state.awake_semi, RegionCells::semi_axis_within(unpacked(ellipsoids[i])));
+    state.has_evidence = state.has_evidence || seeds[i].own > 0.0F;
+    state.is_source = state.is_source || is_source(seeds[i]);
   }
-  groups_ = blocks.cells().groups(states, memory / kMemberBytes);
+}
+
+void BlockRegions::judge(const Context& context,
+                         const std::function<std::vector<RegionSeed>(std::size_t part)>& seeds_of) {
+  const std::size_t memory = memory_budget(context);
+  groups_ = blocks_.cells().groups(states_, memory / kMemberBytes);
+  states_ = {};
   if (groups_.count == 0) return;
   members_ = std::make_unique<SpilledRows<Member>>(groups_.count, memory / 64);
   scores_ = std::make_unique<SpilledRows<float>>(groups_.count, memory / 64);
-  for (std::size_t part = 0; part < blocks.parts(); ++part) {
-    if (blocks.size(part) == 0) continue;
+  for (std::size_t part = 0; part < blocks_.parts(); ++part) {
+    if (blocks_.size(part) == 0) continue;
     check_cancelled(context);
     send(part, seeds_of(part));
   }
   for (std::size_t group = 0; group < groups_.count; ++group) {
     check_cancelled(context);
-    judge(context, group);
+    judge_group(context, group);
   }
   members_.reset();
 }
 
 void BlockRegions::send(std::size_t part, const std::vector<RegionSeed>& seeds) {
+  const std::vector<std::uint32_t> cells = blocks_.cells_of(part);
   const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
   for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
-    const std::uint32_t cell = ellipsoids[i].cell;
+    const std::uint32_t cell = cells[i];
     for (const std::uint32_t group : groups_.needed_by[cell]) {
       const Member member{ellipsoids[i], seeds[i], groups_.owner[cell] == group ? 1U : 0U};
       members_->append(group, std::span(&member, 1));
@@ -54,7 +56,7 @@ void BlockRegions::send(std::size_t part, const std::vector<RegionSeed>& seeds) 
   }
 }
 
-void BlockRegions::judge(const Context& context, std::size_t group) {
+void BlockRegions::judge_group(const Context& context, std::size_t group) {
   const std::vector<Member> members = members_->read_all(group);
   members_->drop(group);
   const std::unique_ptr<EllipsoidTree> tree = tree_of(
@@ -76,10 +78,10 @@ void BlockRegions::judge(const Context& context, std::size_t group) {
 std::vector<float> BlockRegions::scores(std::size_t part) {
   std::vector<float> scores(blocks_.size(part));
   if (groups_.count == 0 || scores.empty()) return scores;
-  const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
+  const std::vector<std::uint32_t> cells = blocks_.cells_of(part);
   std::vector<std::uint32_t> groups, which;
-  for (std::uint32_t i = 0; i < ellipsoids.size(); ++i) {
-    const std::uint32_t owner = groups_.owner[ellipsoids[i].cell];
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t owner = groups_.owner[cells[i]];
     if (owner == CellGroups::kNone) continue;
     groups.push_back(owner);
     which.push_back(i);

@@ -32,30 +32,36 @@ bool meets(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& start, const E
 /// The rays of a chunk on their way, those of one block beside each other.
 struct SortedRays {
   std::vector<SpilledRay> rays;
-  std::vector<std::size_t> ends;  ///< by block
+  std::vector<std::size_t> ends;  ///< by stream
 };
 
-/// The rays of one block.
-class RaysOfBlock final : public RaySource {
+/// The rays of one stream, and of the next ones.
+class SpilledRaySource final : public RaySource {
  public:
-  RaysOfBlock(SpilledRows<SpilledRay>& rays, std::size_t part) : rays_(rays), part_(part) {
-    info_.ray_count = rays.size(part);
+  SpilledRaySource(SpilledRows<SpilledRay>& rays, std::size_t first, std::size_t streams)
+      : rays_(rays), first_(first), last_(first + streams) {
+    info_.ray_count = 0;
+    for (std::size_t stream = first_; stream < last_; ++stream)
+      *info_.ray_count += rays.size(stream);
     info_.precision = Precision::double_;
     info_.extras = {kNumberColumn};
-    rays_.rewind(part_);
+    SpilledRaySource::rewind();
   }
   [[nodiscard]] const CloudInfo& info() const override { return info_; }
 
   [[nodiscard]] bool fetch(RawChunk& raw) override {
     constexpr std::size_t kRays = 32768;
-    raw.first_row = next_;
-    raw.rows = std::min(kRays, rays_.size(part_) - next_);
+    while (stream_ < last_ && next_ == rays_.size(stream_)) {
+      ++stream_;
+      next_ = 0;
+    }
+    if (stream_ == last_) return false;
+    raw.first_row = row_;
+    raw.rows = std::min(kRays, rays_.size(stream_) - next_);
     next_ += raw.rows;
-    if (raw.rows == 0) return false;
-    buffer_.resize(raw.rows);
-    rays_.read(part_, buffer_);
+    row_ += raw.rows;
     raw.bytes.resize(raw.rows * sizeof(SpilledRay));
-    std::memcpy(raw.bytes.data(), static_cast<const void*>(buffer_.data()), raw.bytes.size());
+    rays_.read_bytes(stream_, raw.bytes);
     return true;
   }
 
@@ -76,15 +82,17 @@ class RaysOfBlock final : public RaySource {
   }
 
   void rewind() override {
-    rays_.rewind(part_);
-    next_ = 0;
+    for (std::size_t stream = first_; stream < last_; ++stream)
+      rays_.rewind(stream);
+    stream_ = first_;
+    next_ = row_ = 0;
   }
 
  private:
   SpilledRows<SpilledRay>& rays_;
-  std::size_t part_;
-  std::size_t next_ = 0;
-  std::vector<SpilledRay> buffer_;
+  std::size_t first_, last_;
+  std::size_t stream_ = 0, next_ = 0;
+  std::uint64_t row_ = 0;
   CloudInfo info_;
 };
 
@@ -116,51 +124,57 @@ void BoxTree::find(std::size_t node, const Eigen::Vector3d& start, const Eigen::
 }
 
 CrossingRays::CrossingRays(std::vector<Eigen::AlignedBox3d> boxes, std::size_t memory)
-    : boxes_(boxes), rays_(boxes.size(), memory) {}
+    : boxes_(boxes), rays_(2 * boxes.size(), memory) {}
 
 void CrossingRays::add(const Context& context, RaySource& source, const NumberRays& numbers) {
   stream(
       context, source, nullptr,
       [&](RayCloud& rays, const RawChunk& raw) {
         struct Met {
-          std::uint32_t part, row;
+          std::uint32_t stream, row;
         };
         const std::vector<std::uint32_t> number = numbers(rays, raw);
         SortedRays sorted;
-        sorted.ends.resize(boxes_.size() + 1);
+        sorted.ends.resize(rays_.streams() + 1);
         std::vector<Met> all;
         std::vector<std::uint32_t> found;
         for (std::uint32_t row = 0; row < rays.size(); ++row) {
           boxes_.near_line(rays.starts[row], rays.ends[row], found);
           for (const std::uint32_t part : found) {
-            all.push_back({part, row});
-            ++sorted.ends[part + 1];
+            const bool ends_here = rays.bounded[row] != 0 && boxes_.box(part).contains(rays.ends[row]);
+            const std::uint32_t stream = 2 * part + (ends_here ? 0 : 1);
+            all.push_back({stream, row});
+            ++sorted.ends[stream + 1];
           }
         }
-        for (std::size_t part = 0; part < boxes_.size(); ++part)
-          sorted.ends[part + 1] += sorted.ends[part];
+        for (std::size_t i = 1; i < sorted.ends.size(); ++i)
+          sorted.ends[i] += sorted.ends[i - 1];
         sorted.rays.resize(all.size());
         for (const Met& met : all) {
           const std::uint32_t i = met.row;
-          sorted.rays[sorted.ends[met.part]++] = {rays.starts[i], rays.ends[i], rays.times[i], number[i],
-                                                  rays.bounded[i]};
+          sorted.rays[sorted.ends[met.stream]++] = {rays.starts[i], rays.ends[i], rays.times[i], number[i],
+                                                    rays.bounded[i]};
         }
         return sorted;
       },
       [&](const RayCloud&, const SortedRays& sorted) {
-        // Each end has moved on to where the next block begins.
+        // Each end has moved on to where the next stream begins.
         std::size_t begin = 0;
-        for (std::size_t part = 0; part < boxes_.size(); ++part) {
-          const std::size_t end = sorted.ends[part];
-          if (end > begin) rays_.append(part, std::span(sorted.rays).subspan(begin, end - begin));
+        for (std::size_t i = 0; i < rays_.streams(); ++i) {
+          const std::size_t end = sorted.ends[i];
+          if (end > begin) rays_.append(i, std::span(sorted.rays).subspan(begin, end - begin));
           begin = end;
         }
       });
   source.rewind();
 }
 
-std::unique_ptr<RaySource> CrossingRays::source(std::size_t part) {
-  return std::make_unique<RaysOfBlock>(rays_, part);
+std::unique_ptr<RaySource> CrossingRays::crossing(std::size_t part) {
+  return std::make_unique<SpilledRaySource>(rays_, 2 * part, 2);
+}
+
+std::unique_ptr<RaySource> CrossingRays::ending(std::size_t part) {
+  return std::make_unique<SpilledRaySource>(rays_, 2 * part, 1);
 }
 
 std::span<const std::uint32_t> numbers_of(const RayCloud& rays) {

@@ -20,6 +20,7 @@ class BoxTree {
   /// Their number is a power of two, and they lie as the parts of SpaceCuts do. Empty ones are met by none.
   explicit BoxTree(std::span<const Eigen::AlignedBox3d> boxes);
   [[nodiscard]] std::size_t size() const { return nodes_.size() / 2; }
+  [[nodiscard]] const Eigen::AlignedBox3d& box(std::size_t i) const { return nodes_[size() + i]; }
   /// Replaces `found` by the boxes that the line between the points meets, and perhaps others that it nearly
   /// does.
   void near_line(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
@@ -50,15 +51,14 @@ class CrossingRays {
   /// Reads and rewinds the source.
   void add(const Context& context, RaySource& source, const NumberRays& numbers);
 
-  [[nodiscard]] std::size_t size(std::size_t part) const { return rays_.size(part); }
-  /// The rays of a block, with their numbers as the column `number`, uint32. One at a time, which must not
-  /// outlive this.
-  [[nodiscard]] std::unique_ptr<RaySource> source(std::size_t part);
-  void drop(std::size_t part) { rays_.drop(part); }
+  /// The rays that meet the box of a block, or those of them that are bounded and end in it, with their
+  /// numbers as the column `number`, uint32. One at a time, which must not outlive this.
+  [[nodiscard]] std::unique_ptr<RaySource> crossing(std::size_t part);
+  [[nodiscard]] std::unique_ptr<RaySource> ending(std::size_t part);
 
  private:
   BoxTree boxes_;
-  SpilledRows<SpilledRay> rays_;
+  SpilledRows<SpilledRay> rays_;  ///< of each block first those that end in it, then the others
 };
 
 /// The numbers of the rays of CrossingRays.

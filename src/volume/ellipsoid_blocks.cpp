@@ -12,6 +12,22 @@ namespace ray {
 namespace {
 
 constexpr std::size_t kMostParts = 1024;
+constexpr std::size_t kPointsAtOnce = 4096;
+
+/// Ellipsoids in one cell that follow each other: in the order of a tree of points these are several.
+struct CellRun {
+  RegionCells::Key key{};
+  float semi_axis = 0.0F;
+  std::vector<std::uint32_t> ellipsoids;
+};
+
+void add_to_runs(std::vector<CellRun>& runs, const Ellipsoid& ellipsoid, std::uint32_t number) {
+  const float semi_axis = RegionCells::semi_axis_within(ellipsoid);
+  const RegionCells::Key key = RegionCells::key_of(ellipsoid.centre, semi_axis);
+  if (runs.empty() || runs.back().key != key) runs.push_back({key, 0.0F, {}});
+  runs.back().semi_axis = std::max(runs.back().semi_axis, semi_axis);
+  runs.back().ellipsoids.push_back(number);
+}
 
 std::size_t parts_for(const Context& context, const ReadEnds& ends, std::size_t bytes_per_point) {
   // What lies around a block takes room too.
@@ -33,6 +49,7 @@ EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, cons
                                  std::size_t bytes_per_point)
     : cuts_(ends.sample.ends, parts_for(context, ends, bytes_per_point)),
       ellipsoids_(cuts_.parts(), memory_budget(context) / 64),
+      cell_numbers_(cuts_.parts(), memory_budget(context) / 64),
       boxes_(cuts_.parts()) {
   blocks::SpilledRecords<SeenPoint> near(cuts_, ends.reach, memory_budget(context));
   stream(
@@ -49,7 +66,7 @@ EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, cons
   near.visit_and_drop(context, [&](Block<SeenPoint>&& block, std::size_t part) {
     make(context, std::move(block), part, ends.reach);
   });
-  cells_.close();
+  cells_.close(context);
 }
 
 void EllipsoidBlocks::make(const Context& context, Block<SeenPoint>&& block, std::size_t part, double reach) {
@@ -62,29 +79,33 @@ void EllipsoidBlocks::make(const Context& context, Block<SeenPoint>&& block, std
     count += block.own[i];
   }
   std::vector<PackedEllipsoid> ellipsoids(count);
-  std::vector<float> semi_axes(points.size());  // by place, rounded up; 0 where it is another's
+  std::vector<std::vector<CellRun>> runs((points.size() + kPointsAtOnce - 1) / kPointsAtOnce);
   std::mutex mutex;
-  parallel_for(context, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(points);
     Eigen::AlignedBox3d box;
+    std::vector<CellRun>& of_range = runs[begin / kPointsAtOnce];
     for (std::size_t place = begin; place < end; ++place) {
       const std::uint32_t i = points.index(place);
       if (block.own[i] == 0) continue;
       const Ellipsoid ellipsoid = ellipsoid_at(search, points, place, reach, range_noise_);
-      ellipsoids[place_of_own[i]] = packed(ellipsoid, 0);
-      semi_axes[place] = RegionCells::semi_axis_within(ellipsoid);
+      ellipsoids[place_of_own[i]] = packed(ellipsoid);
       box.extend(box_of(ellipsoid));
+      add_to_runs(of_range, ellipsoid, place_of_own[i]);
     }
     const std::lock_guard lock(mutex);
     boxes_[part].extend(box);
   });
-  // In this order most are in the cell of the one before.
-  for (std::size_t place = 0; place < points.size(); ++place) {
-    if (!(semi_axes[place] > 0.0F)) continue;
-    PackedEllipsoid& of_end = ellipsoids[place_of_own[points.index(place)]];
-    of_end.cell = cells_.add(centre_of(of_end), semi_axes[place]);
-  }
+  std::vector<std::uint32_t> cells(count);
+  for (const std::vector<CellRun>& of_range : runs)
+    for (const CellRun& run : of_range) {
+      const std::uint32_t cell =
+          cells_.add(run.key, run.semi_axis, static_cast<std::uint32_t>(run.ellipsoids.size()));
+      for (const std::uint32_t ellipsoid : run.ellipsoids)
+        cells[ellipsoid] = cell;
+    }
   ellipsoids_.append(part, ellipsoids);
+  cell_numbers_.append(part, cells);
 }
 
 std::unique_ptr<EllipsoidTree> EllipsoidBlocks::tree(const Context& context, std::size_t part) {

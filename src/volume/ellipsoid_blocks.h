@@ -34,8 +34,10 @@ class EllipsoidBlocks {
   /// Those that the ellipsoids are in.
   [[nodiscard]] const RegionCells& cells() const { return cells_; }
 
+  /// By their numbers, which are their places in the block: the ellipsoids, and the cells that they are in.
   [[nodiscard]] std::vector<PackedEllipsoid> load(std::size_t part) { return ellipsoids_.load(part); }
-  /// The number of an ellipsoid is its place in the block.
+  [[nodiscard]] std::vector<std::uint32_t> cells_of(std::size_t part) { return cell_numbers_.load(part); }
+  /// By their numbers.
   [[nodiscard]] std::unique_ptr<EllipsoidTree> tree(const Context& context, std::size_t part);
 
  private:
@@ -43,6 +45,7 @@ class EllipsoidBlocks {
 
   SpaceCuts cuts_;
   SpilledRows<PackedEllipsoid> ellipsoids_;
+  SpilledRows<std::uint32_t> cell_numbers_;
   std::vector<Eigen::AlignedBox3d> boxes_;
   RegionCells cells_;
   double range_noise_ = 0.0;

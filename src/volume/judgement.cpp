@@ -31,22 +31,17 @@ Sides sides_of(Merge merge) {
   return {};
 }
 
-std::vector<Evidence> count_evidence(const Context& context, RaySource& source, const EllipsoidTree& tree,
-                                     const JudgeRule& rule, const Eigen::AlignedBox3d& box) {
+std::vector<Evidence> count_evidence(const Context& context, RaySource& ending, RaySource& crossing,
+                                     const EllipsoidTree& tree, const JudgeRule& rule) {
   std::vector<Evidence> evidence(tree.size());
   {
     HitTimes times(tree.size());
-    each_chunk(context, source, [&](RayCloud& rays) {
-      if (!box.isEmpty())
-        for (std::size_t i = 0; i < rays.size(); ++i)
-          if (!box.contains(rays.ends[i])) rays.bounded[i] = 0;  // hits nothing here
-      times.add(tree, rays, rule.times);
-    });
+    each_chunk(context, ending, [&](const RayCloud& rays) { times.add(tree, rays, rule.times); });
     constexpr double kLongest = 65536.0;  // ticks
     times.find_episodes(context, rule.transients.paper ? kLongest : rule.times.ticks(rule.counting.look_time),
                         evidence);
   }
-  each_chunk(context, source,
+  each_chunk(context, crossing,
              [&](const RayCloud& rays) { add_passes(tree, rays, rule.counting, rule.times, evidence); });
   return evidence;
 }

@@ -8,7 +8,6 @@
 #include <raycloud/volume/free_space.h>
 #include <raycloud/volume/transients.h>
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,11 +35,11 @@ inline constexpr std::size_t kJudgedPointBytes = 140;
 /// Whose ends, and which rays that passed, the merge takes out.
 [[nodiscard]] Sides sides_of(Merge merge);
 
-/// All that the rays tell of the ellipsoids, by slot. None of these reaches out of the box, if it is not
-/// empty. Reads `source` twice and rewinds it. About 2 µs of one core a ray.
-[[nodiscard]] std::vector<Evidence> count_evidence(const Context& context, RaySource& source,
-                                                   const EllipsoidTree& tree, const JudgeRule& rule,
-                                                   const Eigen::AlignedBox3d& box);
+/// All that rays tell of the ellipsoids, by slot: those of `ending` may end in one, those of `crossing` may
+/// cross one; they may be one source. Reads each once and rewinds it. About 2 µs of one core a ray.
+[[nodiscard]] std::vector<Evidence> count_evidence(const Context& context, RaySource& ending,
+                                                   RaySource& crossing, const EllipsoidTree& tree,
+                                                   const JudgeRule& rule);
 
 [[nodiscard]] JudgedEnd judged_end(const Evidence& evidence, float score);
 

@@ -9,17 +9,15 @@
 
 namespace ray {
 
-/// Every bit of an ellipsoid made by ellipsoid_of, and the cell of space that its centre is in. 64 bytes.
+/// Every bit of an ellipsoid made by ellipsoid_of. 56 bytes.
 struct PackedEllipsoid {
   std::array<double, 3> centre{};
   std::array<float, 6> shape{};  ///< xx, xy, xz, yy, yz, zz
   std::array<std::int16_t, 3> normal{};
-  std::uint32_t cell = 0;
 };
 
-[[nodiscard]] inline PackedEllipsoid packed(const Ellipsoid& ellipsoid, std::uint32_t cell) {
+[[nodiscard]] inline PackedEllipsoid packed(const Ellipsoid& ellipsoid) {
   PackedEllipsoid packed;
-  packed.cell = cell;
   std::size_t entry = 0;
   for (int row = 0; row < 3; ++row) {
     const auto axis = static_cast<std::size_t>(row);

@@ -1,6 +1,7 @@
 #pragma once
 /// Where ellipsoids overlap, cell by cell of space: which others the score of each may depend on.
 
+#include <raycloud/exec/context.h>
 #include <raycloud/volume/ellipsoid.h>
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace ray {
@@ -35,12 +37,16 @@ struct CellGroups {
 /// these lie on surfaces. One thread at a time.
 class RegionCells {
  public:
+  using Key = std::array<std::int64_t, 4>;  ///< of a cube: its level, and where it is, in widths
+
   /// The longest semi-axis of an ellipsoid, or up to a third more: m.
   [[nodiscard]] static float semi_axis_within(const Ellipsoid& ellipsoid);
-  /// Adds an ellipsoid by its centre and semi_axis_within, and returns the number of its cell.
-  std::uint32_t add(const Eigen::Vector3d& centre, float semi_axis);
+  /// The cube in which an ellipsoid is, by its centre and semi_axis_within.
+  [[nodiscard]] static Key key_of(const Eigen::Vector3d& centre, float semi_axis);
+  /// Adds some ellipsoids in one cube, the largest of which is so large, and returns the number of the cell.
+  std::uint32_t add(const Key& key, float semi_axis, std::uint32_t count);
   /// Called when all are there.
-  void close();
+  void close(const Context& context);
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
 
   /// Groups of all cells in which a number can be above 0, such that none depends on more than `most`
@@ -48,7 +54,6 @@ class RegionCells {
   [[nodiscard]] CellGroups groups(std::span<const CellState> states, std::size_t most) const;
 
  private:
-  using Key = std::array<std::int64_t, 4>;  ///< of a cube: its level, and where it is, in widths
   struct Hash {
     std::size_t operator()(const Key& key) const;
   };
@@ -58,6 +63,8 @@ class RegionCells {
     std::uint32_t count = 0;
   };
   friend class CellGrouping;
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  void find_pairs(std::uint32_t cell, std::span<const std::int64_t> levels, Pairs& pairs) const;
   [[nodiscard]] static double width_of(std::int64_t level);
   [[nodiscard]] static double gap_between(const Key& a, const Key& b);
   [[nodiscard]] double gap(std::uint32_t a, std::uint32_t b) const {
@@ -71,7 +78,6 @@ class RegionCells {
 
   std::vector<Cell> cells_;
   std::unordered_map<Key, std::uint32_t, Hash> numbers_;
-  std::uint32_t last_ = 0;  ///< the cell of the last one added
   std::vector<std::size_t> first_overlap_;
   std::vector<std::uint32_t> overlaps_;
 };

@@ -36,7 +36,7 @@ TransientCounts split_whole(const Context& context, RaySource& source, RaySink& 
   rule.counting = count_rule(rule.transients.paper, noise.value());
   const std::unique_ptr<EllipsoidTree> tree =
       EllipsoidMaker(std::move(maker)).make(context, ends.reach, noise.value());
-  const std::vector<Evidence> evidence = count_evidence(context, source, *tree, rule, {});
+  const std::vector<Evidence> evidence = count_evidence(context, source, source, *tree, rule);
   const Sides sides = sides_of(rule.transients.merge);
   const auto scores_of = [&](const std::optional<Contradiction>& which) {
     return which ? transience_scores(context, *tree, evidence, *which, rule.transients.paper)

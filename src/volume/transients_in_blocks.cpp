@@ -54,23 +54,29 @@ class TransientBlocks {
   }
 
   void count() {
+    if (!rule_.transients.paper) {
+      if (sides_.ends) of_ends_ = std::make_unique<BlockRegions>(blocks_);
+      if (sides_.passes) of_passes_ = std::make_unique<BlockRegions>(blocks_);
+    }
     each_part([&](std::size_t part) {
-      const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
-      const std::unique_ptr<RaySource> rays = rays_->source(part);
-      evidence_.append(
-          part, by_number(*tree, count_evidence(context_, *rays, *tree, rule_, blocks_.boxes()[part])));
-      if (!sides_.passes) rays_->drop(part);
+      const std::vector<Evidence> evidence = count_part(part);
+      evidence_.append(part, evidence);
+      if (rule_.transients.paper) return;
+      const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
+      if (sides_.ends) of_ends_->see(part, seeds(evidence, *sides_.ends), ellipsoids);
+      if (sides_.passes) of_passes_->see(part, seeds(evidence, *sides_.passes), ellipsoids);
     });
     if (!sides_.passes) rays_.reset();
   }
 
   void judge() {
-    const std::unique_ptr<BlockRegions> of_ends = regions(sides_.ends), of_passes = regions(sides_.passes);
+    if (of_ends_) bring_together(*of_ends_, *sides_.ends);
+    if (of_passes_) bring_together(*of_passes_, *sides_.passes);
     each_part([&](std::size_t part) {
       const std::vector<Evidence> evidence = evidence_.load(part);
       evidence_.drop(part);
-      const std::vector<float> ends = scores(part, evidence, sides_.ends, of_ends.get());
-      std::vector<float> passes = scores(part, evidence, sides_.passes, of_passes.get());
+      const std::vector<float> ends = scores(part, evidence, sides_.ends, of_ends_.get());
+      std::vector<float> passes = scores(part, evidence, sides_.passes, of_passes_.get());
       spare_passes(ends, passes);
       std::vector<JudgedEnd> judged(evidence.size());
       for (std::size_t i = 0; i < judged.size(); ++i)
@@ -114,17 +120,24 @@ class TransientBlocks {
     }
   }
 
-  std::unique_ptr<BlockRegions> regions(const std::optional<Contradiction>& which) {
-    if (!which || rule_.transients.paper) return nullptr;
-    return std::make_unique<BlockRegions>(context_, blocks_, [&](std::size_t part) {
-      const std::vector<Evidence> evidence = evidence_.load(part);
-      std::vector<RegionSeed> seeds(evidence.size());
-      parallel_for(context_, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          seeds[i] = region_seed(evidence[i], *which);
-      });
-      return seeds;
+  std::vector<Evidence> count_part(std::size_t part) {
+    const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
+    return by_number(*tree,
+                     count_evidence(context_, *rays_->ending(part), *rays_->crossing(part), *tree, rule_));
+  }
+
+  [[nodiscard]] std::vector<RegionSeed> seeds(const std::vector<Evidence>& evidence,
+                                              const Contradiction& which) const {
+    std::vector<RegionSeed> seeds(evidence.size());
+    parallel_for(context_, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        seeds[i] = region_seed(evidence[i], which);
     });
+    return seeds;
+  }
+
+  void bring_together(BlockRegions& regions, const Contradiction& which) {
+    regions.judge(context_, [&](std::size_t part) { return seeds(evidence_.load(part), which); });
   }
 
   static std::vector<float> scores(std::size_t part, const std::vector<Evidence>& evidence,
@@ -142,7 +155,7 @@ class TransientBlocks {
     const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
     const std::vector<Evidence> of_slots = by_slot(*tree, evidence);
     const PassJudge judge(*tree, of_slots, by_slot(*tree, scores), rule_);
-    const std::unique_ptr<RaySource> source = rays_->source(part);
+    const std::unique_ptr<RaySource> source = rays_->crossing(part);
     each_chunk(context_, *source, [&](const RayCloud& rays) {
       const std::vector<float> of_chunk = judge.judge(rays);
       const std::span<const std::uint32_t> rows = numbers_of(rays);
@@ -159,6 +172,7 @@ class TransientBlocks {
   std::unique_ptr<CrossingRays> rays_;
   SpilledRows<Evidence> evidence_;
   SpilledRows<JudgedEnd> judged_;
+  std::unique_ptr<BlockRegions> of_ends_, of_passes_;  ///< none by the rule of the paper
   std::vector<float> passes_;  ///< by row of the cloud: empty if no ray goes for what it passed
 };
 

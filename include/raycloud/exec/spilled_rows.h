@@ -34,6 +34,9 @@ class SpilledRows {
   }
   /// Replaces `rows`, as many as there are, by the next of the stream.
   void read(std::size_t stream, std::span<Row> rows) { spill_.read(stream, rows.data(), rows.size_bytes()); }
+  void read_bytes(std::size_t stream, std::span<std::byte> rows) {
+    spill_.read(stream, rows.data(), rows.size());
+  }
   /// All rows of a stream of which none has been read, or that was rewound.
   [[nodiscard]] std::vector<Row> read_all(std::size_t stream) {
     std::vector<Row> rows(size(stream));

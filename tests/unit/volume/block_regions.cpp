@@ -90,12 +90,16 @@ Scored scored_whole(const RayCloud& cloud) {
 Scored scored_in_blocks(const RayCloud& cloud, const Context& context) {
   MemorySource source(cloud, 100);
   EllipsoidBlocks blocks(context, source, read_ends(context, source, 0), 140);
-  BlockRegions regions(context, blocks, [&](std::size_t part) {
+  const auto seeds_of = [&](std::size_t part) {
     std::vector<RegionSeed> seeds;
     for (const PackedEllipsoid& ellipsoid : blocks.load(part))
       seeds.push_back(seed_at(centre_of(ellipsoid)));
     return seeds;
-  });
+  };
+  BlockRegions regions(blocks);
+  for (std::size_t part = 0; part < blocks.parts(); ++part)
+    regions.see(part, seeds_of(part), blocks.load(part));
+  regions.judge(context, seeds_of);
   std::vector<std::vector<PackedEllipsoid>> ellipsoids(blocks.parts());
   std::vector<std::vector<float>> scores(blocks.parts());
   std::vector<std::size_t> next(blocks.parts());
