@@ -6,7 +6,9 @@ namespace ray {
 namespace {
 
 /// For each ellipsoid of a group, at most.
-constexpr std::size_t kMemberBytes = 165;
+constexpr std::size_t kMemberBytes = 170;
+
+constexpr std::size_t kMembersAtOnce = 256;
 
 }  // namespace
 
@@ -18,6 +20,7 @@ void BlockRegions::see(std::size_t part, std::span<const RegionSeed> seeds,
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (!is_awake(seeds[i])) continue;
     CellState& state = states_[cells[i]];
+    state.awake.extend(centre_of(ellipsoids[i]));
     state.awake_semi = std::max(state.awake_semi, RegionCells::semi_axis_within(unpacked(ellipsoids[i])));
     state.has_evidence = state.has_evidence || seeds[i].own > 0.0F;
     state.is_source = state.is_source || is_source(seeds[i]);
@@ -27,7 +30,7 @@ void BlockRegions::see(std::size_t part, std::span<const RegionSeed> seeds,
 void BlockRegions::judge(const Context& context,
                          const std::function<std::vector<RegionSeed>(std::size_t part)>& seeds_of) {
   const std::size_t memory = memory_budget(context);
-  groups_ = blocks_.cells().groups(states_, memory / kMemberBytes);
+  groups_ = blocks_.cells().groups(states_, memory / 4 * 3 / kMemberBytes);
   states_ = {};
   if (groups_.count == 0) return;
   members_ = std::make_unique<SpilledRows<Member>>(groups_.count, memory / 64);
@@ -47,13 +50,17 @@ void BlockRegions::judge(const Context& context,
 void BlockRegions::send(std::size_t part, const std::vector<RegionSeed>& seeds) {
   const std::vector<std::uint32_t> cells = blocks_.cells_of(part);
   const std::vector<PackedEllipsoid> ellipsoids = blocks_.load(part);
-  for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
-    const std::uint32_t cell = cells[i];
-    for (const std::uint32_t group : groups_.needed_by[cell]) {
-      const Member member{ellipsoids[i], seeds[i], groups_.owner[cell] == group ? 1U : 0U};
-      members_->append(group, std::span(&member, 1));
+  std::vector<std::vector<Member>> of_groups(groups_.count);
+  for (std::size_t i = 0; i < ellipsoids.size(); ++i)
+    for (const std::uint32_t group : groups_.needed_by[cells[i]]) {
+      std::vector<Member>& members = of_groups[group];
+      members.push_back({ellipsoids[i], seeds[i], groups_.owner[cells[i]] == group ? 1U : 0U});
+      if (members.size() < kMembersAtOnce) continue;
+      members_->append(group, members);
+      members.clear();
     }
-  }
+  for (std::size_t group = 0; group < groups_.count; ++group)
+    members_->append(group, of_groups[group]);
 }
 
 void BlockRegions::judge_group(const Context& context, std::size_t group) {

@@ -58,13 +58,25 @@ class CellGrouping {
     std::size_t begin_ = 0;
   };
 
-  /// Whether an ellipsoid of `other` may hold a centre of the cell.
+  /// Whether an ellipsoid of `other` may hold a centre of the cell, or one that is awake.
   [[nodiscard]] bool holds(std::uint32_t other, std::uint32_t cell) const {
-    return cells_.gap(cell, other) <= static_cast<double>(cells_.cells_[other].semi);
+    return box(cell).exteriorDistance(box(other)) <= semi_axis(other);
+  }
+  [[nodiscard]] bool holds_awake(std::uint32_t other, std::uint32_t cell) const {
+    const Eigen::AlignedBox3d& awake = states_[cell].awake;
+    return !awake.isEmpty() && awake.exteriorDistance(box(other)) <= semi_axis(other);
   }
   [[nodiscard]] bool are_awake_together(std::uint32_t a, std::uint32_t b) const {
-    const float of_a = states_[a].awake_semi, of_b = states_[b].awake_semi;
-    return of_a > 0.0F && of_b > 0.0F && cells_.gap(a, b) <= static_cast<double>(std::max(of_a, of_b));
+    const CellState &of_a = states_[a], &of_b = states_[b];
+    return !of_a.awake.isEmpty() && !of_b.awake.isEmpty() &&
+           of_a.awake.exteriorDistance(of_b.awake) <=
+               static_cast<double>(std::max(of_a.awake_semi, of_b.awake_semi));
+  }
+  [[nodiscard]] Eigen::AlignedBox3d box(std::uint32_t cell) const {
+    return RegionCells::box_of(cells_.cells_[cell].key);
+  }
+  [[nodiscard]] double semi_axis(std::uint32_t cell) const {
+    return static_cast<double>(cells_.cells_[cell].semi);
   }
 
   /// All cells in which a number may be above 0 at the end.
@@ -82,7 +94,7 @@ class CellGrouping {
       if (kinds_[i].scores) scored.push_back(i);
     }
     Region filled(*this, scored);
-    filled.grow([this](std::uint32_t cell, std::uint32_t other) { return holds(other, cell); });
+    filled.grow([this](std::uint32_t cell, std::uint32_t other) { return holds_awake(other, cell); });
     return filled.cells();
   }
 
@@ -90,7 +102,7 @@ class CellGrouping {
   std::vector<std::uint32_t> depended_on(std::span<const std::uint32_t> cells) {
     Region region(*this, cells);
     region.grow([this](std::uint32_t cell, std::uint32_t other) {
-      return holds(other, cell) || (kinds_[other].scores && holds(cell, other));
+      return holds(other, cell) || (kinds_[other].scores && holds_awake(cell, other));
     });
     region.from_all();
     for (int step = 0; step < kSpreads; ++step)
@@ -99,7 +111,7 @@ class CellGrouping {
       });
     region.from_all();
     region.grow([this](std::uint32_t cell, std::uint32_t other) {
-      return states_[cell].has_evidence && holds(other, cell);
+      return states_[cell].has_evidence && holds_awake(other, cell);
     });
     return region.cells();
   }
@@ -118,10 +130,10 @@ class CellGrouping {
         groups_.needed_by[cell].push_back(group);
       return;
     }
-    const std::size_t axis = longest_axis(cells);
+    const Eigen::Index axis = longest_axis(cells);
     const std::size_t middle = cells.size() / 2;
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = place(a, axis), at_b = place(b, axis);
+      const double at_a = box(a).min()[axis], at_b = box(b).min()[axis];
       return at_a != at_b ? at_a < at_b : a < b;
     };
     std::nth_element(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle), cells.end(), before);
@@ -129,18 +141,13 @@ class CellGrouping {
     divide(cells.subspan(middle), halvings - 1);
   }
 
-  [[nodiscard]] std::size_t longest_axis(std::span<const std::uint32_t> cells) const {
-    Eigen::AlignedBox3d box;
+  [[nodiscard]] Eigen::Index longest_axis(std::span<const std::uint32_t> cells) const {
+    Eigen::AlignedBox3d all;
     for (const std::uint32_t cell : cells)
-      box.extend(Eigen::Vector3d(place(cell, 0), place(cell, 1), place(cell, 2)));
+      all.extend(box(cell).min());
     Eigen::Index longest = 0;
-    box.sizes().maxCoeff(&longest);
-    return static_cast<std::size_t>(longest);
-  }
-  /// m, along an axis.
-  [[nodiscard]] double place(std::uint32_t cell, std::size_t axis) const {
-    const auto& key = cells_.cells_[cell].key;
-    return static_cast<double>(key[axis + 1]) * RegionCells::width_of(key[0]);
+    all.sizes().maxCoeff(&longest);
+    return longest;
   }
 
   const RegionCells& cells_;

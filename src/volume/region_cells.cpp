@@ -47,15 +47,12 @@ std::uint32_t RegionCells::add(const Key& key, float semi_axis, std::uint32_t co
   return at->second;
 }
 
-double RegionCells::gap_between(const Key& a, const Key& b) {
-  const double of_a = width_of(a[0]), of_b = width_of(b[0]);
-  double gap2 = 0.0;
-  for (std::size_t axis = 1; axis < a.size(); ++axis) {
-    const double low_a = static_cast<double>(a[axis]) * of_a, low_b = static_cast<double>(b[axis]) * of_b;
-    const double gap = std::max({0.0, low_b - (low_a + of_a), low_a - (low_b + of_b)});
-    gap2 += gap * gap;
-  }
-  return std::sqrt(gap2);
+Eigen::AlignedBox3d RegionCells::box_of(const Key& key) {
+  const double width = width_of(key[0]);
+  const Eigen::Vector3d low =
+      width *
+      Eigen::Vector3d(static_cast<double>(key[1]), static_cast<double>(key[2]), static_cast<double>(key[3]));
+  return {low, Eigen::Vector3d(low.array() + width)};
 }
 
 /// Of two ellipsoids of which one holds the other's centre, the centres are no further apart than the larger
@@ -63,6 +60,7 @@ double RegionCells::gap_between(const Key& a, const Key& b) {
 void RegionCells::find_pairs(std::uint32_t cell, std::span<const std::int64_t> levels, Pairs& pairs) const {
   const Key& from = cells_[cell].key;
   const double own_width = width_of(from[0]);
+  const Eigen::AlignedBox3d box = box_of(from);
   for (const std::int64_t level : levels) {
     if (level < from[0]) continue;
     const double width = width_of(level);
@@ -79,7 +77,7 @@ void RegionCells::find_pairs(std::uint32_t cell, std::span<const std::int64_t> l
           const auto other = numbers_.find(Key{level, x, y, z});
           if (other == numbers_.end()) continue;
           const float reach = std::max(cells_[cell].semi, cells_[other->second].semi);
-          if (!(gap_between(from, other->first) <= static_cast<double>(reach))) continue;
+          if (!(box.exteriorDistance(box_of(other->first)) <= static_cast<double>(reach))) continue;
           pairs.emplace_back(cell, other->second);
           if (level != from[0]) pairs.emplace_back(other->second, cell);
         }

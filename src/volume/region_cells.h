@@ -4,6 +4,7 @@
 #include <raycloud/exec/context.h>
 #include <raycloud/volume/ellipsoid.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -16,7 +17,8 @@ namespace ray {
 
 /// What the evidence in a cell can bring about (transient_regions.h).
 struct CellState {
-  float awake_semi = 0.0F;  ///< m, the longest semi-axis of those whose number can change; 0: there are none
+  Eigen::AlignedBox3d awake;  ///< of the centres of those whose number can change
+  float awake_semi = 0.0F;    ///< m, their longest semi-axis
   bool has_evidence = false;  ///< something has evidence of its own
   bool is_source = false;     ///< something has so much that it may spread
 };
@@ -66,10 +68,7 @@ class RegionCells {
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   void find_pairs(std::uint32_t cell, std::span<const std::int64_t> levels, Pairs& pairs) const;
   [[nodiscard]] static double width_of(std::int64_t level);
-  [[nodiscard]] static double gap_between(const Key& a, const Key& b);
-  [[nodiscard]] double gap(std::uint32_t a, std::uint32_t b) const {
-    return gap_between(cells_[a].key, cells_[b].key);
-  }
+  [[nodiscard]] static Eigen::AlignedBox3d box_of(const Key& key);
   /// The cells whose ellipsoids may hold a centre of this one's, or the other way round; itself among them.
   [[nodiscard]] std::span<const std::uint32_t> overlapping(std::uint32_t cell) const {
     return std::span(overlaps_).subspan(first_overlap_[cell],

@@ -15,19 +15,27 @@
 namespace ray {
 namespace {
 
+constexpr std::size_t kAtOnce = 1 << 14;
+
 /// By the slots of a tree what is by the numbers of its ellipsoids.
 template <class Value>
-std::vector<Value> by_slot(const EllipsoidTree& tree, const std::vector<Value>& by_number) {
+std::vector<Value> by_slot(const Context& context, const EllipsoidTree& tree,
+                           const std::vector<Value>& by_number) {
   std::vector<Value> values(by_number.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[tree.slot(i)] = by_number[i];
+  parallel_for(context, values.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      values[tree.slot(i)] = by_number[i];
+  });
   return values;
 }
 template <class Value>
-std::vector<Value> by_number(const EllipsoidTree& tree, const std::vector<Value>& by_slot) {
+std::vector<Value> by_number(const Context& context, const EllipsoidTree& tree,
+                             const std::vector<Value>& by_slot) {
   std::vector<Value> values(by_slot.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = by_slot[tree.slot(i)];
+  parallel_for(context, values.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      values[i] = by_slot[tree.slot(i)];
+  });
   return values;
 }
 
@@ -79,8 +87,10 @@ class TransientBlocks {
       std::vector<float> passes = scores(part, evidence, sides_.passes, of_passes_.get());
       spare_passes(ends, passes);
       std::vector<JudgedEnd> judged(evidence.size());
-      for (std::size_t i = 0; i < judged.size(); ++i)
-        judged[i] = judged_end(evidence[i], ends.empty() ? 0.0F : ends[i]);
+      parallel_for(context_, judged.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          judged[i] = judged_end(evidence[i], ends.empty() ? 0.0F : ends[i]);
+      });
       judged_.append(part, judged);
       if (std::any_of(passes.begin(), passes.end(), [](float score) { return score > 0.0F; }))
         judge_passes(part, evidence, passes);
@@ -122,14 +132,14 @@ class TransientBlocks {
 
   std::vector<Evidence> count_part(std::size_t part) {
     const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
-    return by_number(*tree,
+    return by_number(context_, *tree,
                      count_evidence(context_, *rays_->ending(part), *rays_->crossing(part), *tree, rule_));
   }
 
   [[nodiscard]] std::vector<RegionSeed> seeds(const std::vector<Evidence>& evidence,
                                               const Contradiction& which) const {
     std::vector<RegionSeed> seeds(evidence.size());
-    parallel_for(context_, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, seeds.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         seeds[i] = region_seed(evidence[i], which);
     });
@@ -153,8 +163,8 @@ class TransientBlocks {
   void judge_passes(std::size_t part, const std::vector<Evidence>& evidence,
                     const std::vector<float>& scores) {
     const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
-    const std::vector<Evidence> of_slots = by_slot(*tree, evidence);
-    const PassJudge judge(*tree, of_slots, by_slot(*tree, scores), rule_);
+    const std::vector<Evidence> of_slots = by_slot(context_, *tree, evidence);
+    const PassJudge judge(*tree, of_slots, by_slot(context_, *tree, scores), rule_);
     const std::unique_ptr<RaySource> source = rays_->crossing(part);
     each_chunk(context_, *source, [&](const RayCloud& rays) {
       const std::vector<float> of_chunk = judge.judge(rays);
