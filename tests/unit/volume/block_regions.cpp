@@ -48,6 +48,21 @@ RayCloud surroundings(std::uint64_t seed, std::size_t count) {
   return cloud;
 }
 
+/// The ends along a wire: ellipsoids as long as can be, so what spreads goes as far as it can.
+RayCloud wire(double spacing, std::size_t count) {
+  const RandomStream random(7, "wire");
+  RayCloud cloud;
+  cloud.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.starts[i] = {0.0, 0.0, 2.0};
+    cloud.ends[i] = {spacing * static_cast<double>(i), 0.004 * random.uniform(i, 0),
+                     0.004 * random.uniform(i, 1)};
+    cloud.times[i] = static_cast<double>(i);
+    cloud.bounded[i] = 1;
+  }
+  return cloud;
+}
+
 std::uint64_t number_of(const Eigen::Vector3d& place) {
   std::uint64_t number = 0;
   for (const double coordinate : {place.x(), place.y(), place.z()})
@@ -55,15 +70,20 @@ std::uint64_t number_of(const Eigen::Vector3d& place) {
   return number;
 }
 
-/// By the place of the ellipsoid: much that hints, and here and there a patch with evidence of its own, from
-/// which it spreads.
+constexpr double kPatches = 1.25;  // 1/m
+
+/// By the place of the ellipsoid: nearly everything hints, so that what is sure of itself, in a few patches,
+/// spreads as far as it can.
 RegionSeed seed_at(const Eigen::Vector3d& centre) {
   const RandomStream random(number_of(centre), "seed");
-  const double patch = RandomStream(number_of((2.0 * centre).array().floor()), "patch").uniform(0, 0);
+  const RandomStream of_patch(number_of((kPatches * centre).array().floor()), "patch");
+  const double patch = of_patch.uniform(0, 0);
   RegionSeed seed;
-  seed.hint = static_cast<float>(random.uniform(0, 0) < 0.7 ? 0.7 + 3.0 * random.uniform(0, 1) : 0.5);
-  if (patch < 0.2 && random.uniform(0, 2) < 0.8)
-    seed.own = static_cast<float>((patch < 0.1 ? 40.0 : 4.0) * random.uniform(0, 3));
+  seed.hint = static_cast<float>(random.uniform(0, 0) < 0.9 ? 6.0 + 6.0 * random.uniform(0, 1) : 0.5);
+  if (patch < 0.05 && random.uniform(0, 2) < 0.9)
+    seed.own = static_cast<float>(20.0 + 60.0 * of_patch.uniform(0, 1));
+  else if (patch < 0.1)
+    seed.own = static_cast<float>(4.0 * random.uniform(0, 3));
   seed.opaque = random.below(2, 0, 4) == 0 ? 1 : 0;
   return seed;
 }
@@ -131,9 +151,21 @@ TEST(BlockRegions, knowWhatTheWholeCloudDoes) {
   const RayCloud cloud = surroundings(1, 3000);
   const Scored whole = scored_whole(cloud);
   EXPECT_GT(std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
-            300);
+            200);
   for (const std::size_t memory : {200UL << 10, 50UL << 10, 15UL << 10})
     expect_same(scored_in_blocks(cloud, {.memory = memory}), whole);
+}
+
+TEST(BlockRegions, knowHowFarItSpreads) {
+  // Cells are in powers of two: how many ellipsoids fit one depends on the spacing.
+  for (const double spacing : {0.03, 0.034, 0.039, 0.045, 0.051}) {
+    const RayCloud cloud = wire(spacing, 3000);
+    const Scored whole = scored_whole(cloud);
+    EXPECT_GT(
+        std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
+        200);
+    expect_same(scored_in_blocks(cloud, {.memory = 10UL << 10}), whole);
+  }
 }
 
 RC_GTEST_PROP(BlockRegions, knowWhatTheWholeCloudDoesForAnyNumber, (std::uint64_t seed)) {
