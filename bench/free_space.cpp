@@ -3,11 +3,12 @@
 // Prints a line on what making the ellipsoids takes, counting ends in them, and walking all rays, and one on
 // merging the cloud's two halves, of every other ray.
 
+#include "cloud_ellipsoids.h"
+
 #include <raycloud/core/memory_stream.h>
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/stream.h>
 #include <raycloud/io/ray_cloud_file.h>
-#include <raycloud/spatial/surfel.h>
 #include <raycloud/volume/free_space.h>
 #include <raycloud/volume/merge_clouds.h>
 
@@ -23,25 +24,6 @@ struct Instant {
   double wall = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   double processor = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 };
-
-ray::EllipsoidTree ellipsoids_of(const ray::Context& context, const ray::RayCloud& rays) {
-  std::vector<ray::SeenPoint> points;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays.bounded[i] != 0)
-      points.push_back({rays.ends[i], ray::pack_direction(rays.starts[i] - rays.ends[i])});
-  ray::EllipsoidTree tree(context, points.size(), [&](std::size_t i) { return points[i].end; });
-  const ray::PointTree near(context, points);
-  ray::parallel_for(context, near.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    ray::NeighbourSearch search(near);
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t i = near.index(place);
-      tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = false}), points[i].end,
-                                    ray::unpack_direction(points[i].to_sensor), 0.015));
-    }
-  });
-  tree.close(context);
-  return tree;
-}
 
 /// `work(chunk)` for all rays, in pieces.
 template <class Work>
@@ -97,7 +79,7 @@ int main(int argc, char** argv) {
   const auto source = ray::open_ray_cloud(argv[1]);
   const ray::RayCloud rays = read_all(context, *source);
   const Instant begun;
-  const ray::EllipsoidTree tree = ellipsoids_of(context, rays);
+  const ray::EllipsoidTree tree = bench::ellipsoids_of(context, rays, {});
   const Instant made;
   std::vector<ray::Evidence> evidence(tree.size());
   const ray::TimeScale scale(rays.times.front(), rays.times.back());
@@ -120,6 +102,6 @@ int main(int argc, char** argv) {
   std::printf(" walk");
   spent(counted, walked);
   std::printf(" %.2f M rays/s (bar 2)\n", count / (walked.wall - counted.wall) / 1e6);
-  if (argc < 4) print_merge(context, rays);
+  print_merge(context, rays);
   return 0;
 }

@@ -2,7 +2,7 @@
 
 #include "cli/grouped.h"
 #include "cloud_to_cloud.h"
-#include "step.h"
+#include "merged_files.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/core/memory_stream.h>
@@ -17,12 +17,6 @@ namespace ray::tools {
 namespace {
 
 using Sources = std::vector<std::unique_ptr<RaySource>>;
-
-/// Whether both names lead to one file.
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error;
-  return std::filesystem::equivalent(a, b, error) && !error;
-}
 
 std::string number_of_rays(std::uint64_t count) {
   return cli::grouped(count) + (count == 1 ? " ray" : " rays");
@@ -40,68 +34,6 @@ std::vector<RaySource*> pointers_to(const Sources& sources) {
   for (const auto& source : sources)
     pointers.push_back(source.get());
   return pointers;
-}
-
-struct ToMerge {
-  CloudInfo info;             ///< of the result
-  RaySource* kept = nullptr;  ///< rays that come before all others, if any
-  std::vector<RaySource*> clouds;
-};
-
-/// The result and, if there is one, the differences.
-struct MergedFiles {
-  std::vector<std::filesystem::path> names;
-  bool in_place = false;
-  std::string format;  ///< in place, that of the file
-};
-
-MergedFiles merged_files(const cli::Match& match, const std::vector<std::string>& inputs, bool differences) {
-  const std::filesystem::path& input = inputs.front();
-  MergedFiles files;
-  files.names.push_back(cli::main_output(match, input, "_combined"));
-  for (const std::string& file : inputs) {
-    if (!same_file(file, files.names.front())) continue;
-    files.in_place = true;
-    files.format = cloud_format(file);
-  }
-  if (differences && !files.in_place)
-    files.names.push_back(
-        cli::output_name(match.has("--output") ? files.names.front() : input, "_differences"));
-  return files;
-}
-
-MergeCounts write_once(cli::Session& session, const ToMerge& merge, const MergeRule& rule,
-                       const MergedFiles& files, OutputPrecision& precision) {
-  std::vector<std::unique_ptr<RaySink>> sinks;
-  for (std::size_t i = 0; i < files.names.size(); ++i) {
-    CloudInfo info = precision.widened(i, merge.info);
-    info.history.push_back(session.history());
-    sinks.push_back(precision.watch(
-        i,
-        create_ray_cloud(files.names[i], info, {.flush_to_disk = files.in_place, .format = files.format})));
-  }
-  if (merge.kept != nullptr)
-    stream_each(session.context(), *merge.kept, *sinks.front(), [](const RayCloud&) {});
-  const MergeCounts counts = merge_clouds(session.context(), merge.clouds, *sinks.front(),
-                                          sinks.size() > 1 ? sinks.back().get() : nullptr, rule);
-  for (const auto& sink : sinks)
-    sink->finish();
-  return counts;
-}
-
-MergeCounts write_merged(cli::Session& session, const ToMerge& merge, const MergeRule& rule,
-                         const MergedFiles& files) {
-  OutputPrecision precision(files.names.size());
-  while (true) {
-    try {
-      return write_once(session, merge, rule, files, precision);
-    } catch (const PrecisionLoss&) {
-      // Each time one more of the outputs is double.
-      if (merge.kept != nullptr) merge.kept->rewind();
-      for (RaySource* cloud : merge.clouds)
-        cloud->rewind();
-    }
-  }
 }
 
 /// An empty file instead of a map.

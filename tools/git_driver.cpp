@@ -3,6 +3,7 @@
 #include "cli/shell_words.h"
 
 #include <raycloud/core/error.h>
+#include <raycloud/io/atomic_file.h>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -112,23 +113,13 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
-/// Another file takes the place of the old one when it is complete.
 void write_lines(const std::filesystem::path& file, const std::vector<std::string>& lines) {
   std::error_code error;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(file, error);
-  const std::filesystem::path target = error ? file : real;
-  if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), error);
-  std::filesystem::path partial = target;
-  partial += ".partial";
-  std::ofstream stream(partial);
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
+  AtomicFile output(file);
   for (const std::string& line : lines)
-    stream << line << '\n';
-  stream.close();
-  if (stream) std::filesystem::rename(partial, target, error);
-  if (!stream || error) {
-    std::filesystem::remove(partial, error);
-    throw Error(ErrorCode::file_access, file.string() + ": cannot write");
-  }
+    output.write(line + '\n');
+  output.commit();
 }
 
 bool is_attribute(const std::string& line) {

@@ -1,11 +1,11 @@
 // What merging two maps of a changed world takes out and what it keeps, on simulated scans.
 
+#include "../cloud_ellipsoids.h"
 #include "street_scene.h"
 #include "tables.h"
 
 #include <raycloud/core/memory_stream.h>
 #include <raycloud/exec/stream.h>
-#include <raycloud/spatial/surfel.h>
 #include <raycloud/synth/scene_caster.h>
 #include <raycloud/synth/scenes.h>
 #include <raycloud/synth/simulate.h>
@@ -64,23 +64,6 @@ WorldPair changed(const ray::Scene& scene, ray::SceneLabel label) {
   return pair;
 }
 
-ray::EllipsoidTree ellipsoids_around(const ray::RayCloud& rays) {
-  std::vector<ray::SeenPoint> points;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays.bounded[i] != 0)
-      points.push_back({rays.ends[i], ray::pack_direction(rays.starts[i] - rays.ends[i])});
-  ray::EllipsoidTree tree({}, points.size(), [&](std::size_t i) { return points[i].end; });
-  const ray::PointTree near({}, points);
-  ray::NeighbourSearch search(near);
-  for (std::size_t place = 0; place < near.size(); ++place) {
-    const std::uint32_t i = near.index(place);
-    tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = false}), points[i].end,
-                                  ray::unpack_direction(points[i].to_sensor), 0.015));
-  }
-  tree.close({});
-  return tree;
-}
-
 struct HowScanned {
   std::string name;
   std::uint64_t rays = 300'000;
@@ -118,7 +101,7 @@ ray::RayCloud scan_of(const ray::Scene& scene, const ray::Scene& of_other, ray::
 /// For each ray, how many rays of the other cloud go through the ellipsoid around its end and on for 5 cm; 0
 /// for unbounded ones.
 std::vector<std::uint16_t> crossings_of(const ray::RayCloud& rays, const ray::RayCloud& of_other) {
-  const ray::EllipsoidTree tree = ellipsoids_around(rays);
+  const ray::EllipsoidTree tree = ellipsoids_of({}, rays, {});
   std::vector<ray::Evidence> evidence(tree.size());
   add_passes(tree, of_other, {}, {0.0, 1.0}, evidence);
   std::vector<std::uint16_t> crossings(rays.size());

@@ -1,11 +1,11 @@
 // How true the opacity of ellipsoids is, in a hedge whose opacity is known: of rays that go l m through
 // leaves that face anywhere, 1 - exp(-density l / 2) end there.
 
+#include "../cloud_ellipsoids.h"
 #include "street_scene.h"
 #include "tables.h"
 
 #include <raycloud/exec/stream.h>
-#include <raycloud/spatial/surfel.h>
 #include <raycloud/synth/simulate.h>
 #include <raycloud/volume/free_space.h>
 
@@ -19,23 +19,6 @@ namespace {
 constexpr double kRangeNoise = 0.005;  // m
 constexpr int kFewestRays = 100;
 constexpr std::size_t kSample = 300;  // ellipsoids
-
-ray::EllipsoidTree ellipsoids_of(const ray::RayCloud& rays) {
-  std::vector<ray::SeenPoint> points;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays.bounded[i] != 0)
-      points.push_back({rays.ends[i], ray::pack_direction(rays.starts[i] - rays.ends[i])});
-  ray::EllipsoidTree tree({}, points.size(), [&](std::size_t i) { return points[i].end; });
-  const ray::PointTree near({}, points);
-  ray::NeighbourSearch search(near);
-  for (std::size_t place = 0; place < near.size(); ++place) {
-    const std::uint32_t i = near.index(place);
-    tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {}), points[i].end,
-                                  ray::unpack_direction(points[i].to_sensor), kRangeNoise));
-  }
-  tree.close({});
-  return tree;
-}
 
 /// Of the rays that reach it.
 double expected_opacity(const ray::Ellipsoid& ellipsoid, const ray::RayCloud& rays, double density) {
@@ -53,7 +36,7 @@ double expected_opacity(const ray::Ellipsoid& ellipsoid, const ray::RayCloud& ra
 void opacity_row(double density, double blade, std::uint64_t count) {
   const ray::Scene scene = hedge_scene(density, blade);
   const ray::RayCloud rays = read_all({}, *simulate(scene, {.rays = count, .noise = kRangeNoise}));
-  const ray::EllipsoidTree tree = ellipsoids_of(rays);
+  const ray::EllipsoidTree tree = ellipsoids_of({}, rays, {.by_side = true, .range_noise = kRangeNoise});
   std::vector<ray::Evidence> evidence(tree.size());
   const ray::TimeScale scale(scene.path.times.front(), scene.path.times.back());
   ray::HitTimes times(tree.size());

@@ -10,11 +10,6 @@
 namespace ray {
 namespace {
 
-/// Which passes, by their time, are a reason for whom to give way.
-struct Sides {
-  std::optional<Contradiction> ends, passes;
-};
-
 Sides sides_of(CloudMerge merge, bool own_is_earlier) {
   const Contradiction any, before{.between = false, .after = false}, after{.before = false, .between = false};
   switch (merge) {
@@ -67,18 +62,6 @@ float passes_of(const Evidence& evidence) {
   return static_cast<float>(std::max(evidence.passes.front(), evidence.passes.back()));
 }
 
-std::vector<float> conflict_scores(const Context& context, const EllipsoidTree& tree,
-                                   std::span<const Evidence> evidence, bool paper,
-                                   const Contradiction& which) {
-  if (!paper) return transient_regions(context, tree, evidence, which);
-  std::vector<float> scores(evidence.size());
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const Transience transience = paper_transience(evidence[i]);
-    scores[i] = std::max(which.before ? transience.before : 0.0F, which.after ? transience.after : 0.0F);
-  }
-  return scores;
-}
-
 /// Those of a run that is longer than it may be by chance.
 std::vector<PassConflict> pass_conflicts(std::span<const float> scores, std::span<const Evidence> evidence,
                                          bool paper) {
@@ -106,9 +89,9 @@ CloudConflicts cloud_conflicts(const Context& context, const EllipsoidTree& tree
   }
   const Sides sides = sides_of(rule.merge, own < other);
   CloudConflicts conflicts;
-  if (sides.ends) conflicts.ends = conflict_scores(context, tree, evidence, rule.paper, *sides.ends);
+  if (sides.ends) conflicts.ends = transience_scores(context, tree, evidence, *sides.ends, rule.paper);
   if (sides.passes)
-    conflicts.passes = pass_conflicts(conflict_scores(context, tree, evidence, rule.paper, *sides.passes),
+    conflicts.passes = pass_conflicts(transience_scores(context, tree, evidence, *sides.passes, rule.paper),
                                       evidence, rule.paper);
   return conflicts;
 }

@@ -23,6 +23,12 @@ bool is_in_sample(const Eigen::Vector3d& point, std::uint64_t stride) {
 
 }  // namespace
 
+Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::size_t place, double reach,
+                       double range_noise) {
+  return ellipsoid_of(surfel_at(search, place, ellipsoid_rule(reach)), points.point(place),
+                      unpack_direction(points.to_sensor(place)), range_noise);
+}
+
 void RangeNoise::add(const Context& context, const PointTree& tree, std::span<const std::uint8_t> own) {
   constexpr double kFlat = 0.1;
   constexpr std::uint64_t kSample = 4096;
@@ -63,13 +69,10 @@ EllipsoidMaker::EllipsoidMaker(const Context& context, std::vector<SeenPoint>&& 
 
 std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, double reach,
                                                     double range_noise) {
-  const SurfelRule rule = ellipsoid_rule(reach);
   parallel_for(context, points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(points_);
     for (std::size_t place = begin; place < end; ++place)
-      ellipsoids_->set(points_.index(place),
-                       ellipsoid_of(surfel_at(search, place, rule), points_.point(place),
-                                    unpack_direction(points_.to_sensor(place)), range_noise));
+      ellipsoids_->set(points_.index(place), ellipsoid_at(search, points_, place, reach, range_noise));
   });
   ellipsoids_->close(context);
   return std::move(ellipsoids_);

@@ -19,6 +19,10 @@ namespace ray {
   return {.neighbours = 16, .reach = reach, .by_side = false};
 }
 
+/// The ellipsoid around a point.
+[[nodiscard]] Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::size_t place,
+                                     double reach, double range_noise);
+
 /// The noise of the ranges: the median scatter of the points about flat surfaces, from a sample of the points
 /// that depends on their places alone.
 class RangeNoise {

@@ -1,5 +1,5 @@
+#include "contradicted_ends.h"
 #include "end_distances.h"
-#include "seen_through.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/spatial/voxel_set.h>
@@ -15,7 +15,7 @@ std::size_t number_of(Difference difference) {
   return static_cast<std::size_t>(difference);
 }
 
-/// The class of each end of one cloud; `scores` are those of seen_through.
+/// The class of each end of one cloud; `scores` are those of contradicted_ends.
 std::vector<Difference> judge(std::span<const std::uint8_t> within, std::span<const float> scores,
                               double rays, Difference changed) {
   std::vector<Difference> differences(within.size());
@@ -98,9 +98,9 @@ CloudComparison compare_clouds(const Context& context, RaySource& first, RaySour
   for (std::size_t own = 0; own < 2; ++own) {
     const bool all_same = std::find(within[own].begin(), within[own].end(), 0) == within[own].end();
     std::vector<Difference>& differences = comparison.clouds[own].differences;
-    differences = judge(within[own],
-                        all_same ? std::vector<float>() : seen_through(context, timed[own], timed[1 - own]),
-                        rule.rays, own == 0 ? Difference::removed : Difference::added);
+    differences = judge(
+        within[own], all_same ? std::vector<float>() : contradicted_ends(context, timed[own], timed[1 - own]),
+        rule.rays, own == 0 ? Difference::removed : Difference::added);
     for (std::size_t i = 0; i < differences.size(); ++i) {
       DifferenceTotals& totals = comparison.totals[number_of(differences[i])];
       ++totals.rays;

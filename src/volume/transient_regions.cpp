@@ -1,6 +1,7 @@
 #include "transient_regions.h"
 
 #include "raise.h"
+#include "transience.h"
 
 #include <raycloud/exec/parallel.h>
 
@@ -13,6 +14,9 @@ namespace {
 /// pauses three times that.
 constexpr Transience kByChance{1.0F, 3.0F, 1.0F};
 constexpr Transience kHintByChance{0.5F, 1.5F, 0.5F};
+
+constexpr float kTogether = 2.5F;  ///< how much surer several are than one
+constexpr float kSource = 14.0F, kLeastHint = 0.7F;
 
 float beyond(const Transience& transience, const Transience& chance, const Contradiction& which) {
   return (which.before ? std::max(0.0F, transience.before - chance.before) : 0.0F) +
@@ -28,18 +32,15 @@ float quantile(std::vector<float>& values, std::size_t tenths) {
 
 class Regions {
  public:
-  Regions(const Context& context, const EllipsoidTree& tree, std::span<const Evidence> evidence,
-          const Contradiction& which)
-      : context_(context),
-        tree_(tree),
-        own_(evidence.size()),
-        hints_(evidence.size()),
-        opaque_(evidence.size()) {
-    parallel_for(context, evidence.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  Regions(const Context& context, const EllipsoidTree& tree,
+          const std::function<RegionSeed(std::size_t slot)>& seed)
+      : context_(context), tree_(tree), own_(tree.size()), hints_(tree.size()), opaque_(tree.size()) {
+    parallel_for(context, tree.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        own_[i] = beyond(transience_of(evidence[i]), kByChance, which);
-        hints_[i] = beyond(hint_of(evidence[i]), kHintByChance, which);
-        opaque_[i] = opacity_while_there(evidence[i]) >= kOpaque ? 1 : 0;
+        const RegionSeed of_slot = seed(i);
+        own_[i] = of_slot.own;
+        hints_[i] = of_slot.hint;
+        opaque_[i] = of_slot.opaque;
       }
     });
   }
@@ -56,7 +57,7 @@ class Regions {
 
   /// To those whose centre is in the ellipsoid, and to those in which its centre is.
   void spread() {
-    constexpr float kSource = 14.0F, kLeastHint = 0.7F, kMostOfHint = 10.0F;
+    constexpr float kMostOfHint = 10.0F;
     std::vector<float>& reached = own_;  // which is needed no more
     std::fill(reached.begin(), reached.end(), 0.0F);
     each([&](std::size_t i) { return scores_[i] >= kSource || hints_[i] > kLeastHint; },
@@ -95,8 +96,6 @@ class Regions {
  private:
   static constexpr std::size_t kGrain = 4096;
   static constexpr std::size_t kMedian = 5, kLeastTenth = 1;  ///< tenths
-  static constexpr float kOpaque = 0.95F;
-  static constexpr float kTogether = 2.5F;
 
   /// `work(i, around)` for each that `wanted(i)`, with the ellipsoids that its centre is in.
   template <class Wanted, class Work>
@@ -130,15 +129,44 @@ class Regions {
 
 }  // namespace
 
+RegionSeed region_seed(const Evidence& evidence, const Contradiction& which) {
+  constexpr float kOpaque = 0.95F;
+  return {beyond(transience_of(evidence), kByChance, which), beyond(hint_of(evidence), kHintByChance, which),
+          static_cast<std::uint8_t>(opacity_while_there(evidence) >= kOpaque ? 1 : 0)};
+}
+
+bool is_awake(const RegionSeed& seed) {
+  return seed.own > 0.0F || seed.hint > kLeastHint;
+}
+
+bool is_source(const RegionSeed& seed) {
+  return kTogether * seed.own >= kSource;
+}
+
 std::vector<float> transient_regions(const Context& context, const EllipsoidTree& tree,
-                                     std::span<const Evidence> evidence, const Contradiction& which) {
-  constexpr int kSpreads = 3;
-  Regions regions(context, tree, evidence, which);
+                                     const std::function<RegionSeed(std::size_t slot)>& seed) {
+  Regions regions(context, tree, seed);
   regions.begin();
   for (int i = 0; i < kSpreads; ++i)
     regions.spread();
   regions.fill_holes();
   return regions.take();
+}
+
+float paper_score(const Evidence& evidence, const Contradiction& which) {
+  const Transience transience = paper_transience(evidence);
+  return std::max(which.before ? transience.before : 0.0F, which.after ? transience.after : 0.0F);
+}
+
+std::vector<float> transience_scores(const Context& context, const EllipsoidTree& tree,
+                                     std::span<const Evidence> evidence, const Contradiction& which,
+                                     bool paper) {
+  if (!paper)
+    return transient_regions(context, tree, [&](std::size_t i) { return region_seed(evidence[i], which); });
+  std::vector<float> scores(evidence.size());
+  std::transform(evidence.begin(), evidence.end(), scores.begin(),
+                 [&](const Evidence& of_slot) { return paper_score(of_slot, which); });
+  return scores;
 }
 
 }  // namespace ray

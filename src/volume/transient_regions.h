@@ -1,32 +1,39 @@
 #pragma once
 /// What is transient comes in regions: evidence of neighbours is brought together.
 
-#include "transience.h"
+#include "contradiction.h"
 
 #include <raycloud/exec/context.h>
 #include <raycloud/volume/ellipsoid_tree.h>
 
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 namespace ray {
 
-/// Which of the three kinds of passes contradict.
-struct Contradiction {
-  bool before = true;
-  bool between = true;
-  bool after = true;
+/// What the evidence of an ellipsoid says before that of others is heard. 12 bytes.
+struct RegionSeed {
+  float own = 0.0F;         ///< its transience, less what a hedge of even opacity would have by chance
+  float hint = 0.0F;        ///< the same of its hint of transience
+  std::uint8_t opaque = 0;  ///< 1: hardly a ray went through while it was there
 };
+[[nodiscard]] RegionSeed region_seed(const Evidence& evidence, const Contradiction& which);
 
-/// An ellipsoid's number depends on the evidence of those that are up to so many steps away: from centre to
-/// centre, of which one lies in the ellipsoid of the other.
-inline constexpr int kRegionSteps = 5;
+/// Whether its number can be above 0 before holes are filled.
+[[nodiscard]] bool is_awake(const RegionSeed& seed);
+/// Whether it may be so sure that it spreads to others.
+[[nodiscard]] bool is_source(const RegionSeed& seed);
+
+/// How often transience spreads.
+inline constexpr int kSpreads = 3;
 
 /// For each ellipsoid, by slot, the number of rays below which it is transient. Every step treats all numbers
 /// at once: it takes medians, minima and maxima, and multiples of them.
 ///
-/// 1. Its own transience, less what a hedge of even opacity would have by chance, but not above the median of
-///    the ellipsoids around its centre. Or, if it was opaque, two and a half times that, but not above as
+/// 1. Its own transience, as a seed has it, but not above the median of the ellipsoids around its centre. Or,
+/// if it was opaque, two and a half times that, but not above as
 ///    much of the least tenth of them: together they cover some four times its area, and so many more rays
 ///    went through.
 /// 2. From where it is above 14 it spreads, three times, to ellipsoids that overlap, up to ten times their
@@ -36,7 +43,14 @@ inline constexpr int kRegionSteps = 5;
 ///
 /// Memory: 13 bytes an ellipsoid. Time: little where nothing is transient.
 [[nodiscard]] std::vector<float> transient_regions(const Context& context, const EllipsoidTree& tree,
+                                                   const std::function<RegionSeed(std::size_t slot)>& seed);
+
+/// The numbers of the ellipsoids of a whole tree by their evidence alone: transient_regions, or what the
+/// paper's rule says of each by itself.
+[[nodiscard]] std::vector<float> transience_scores(const Context& context, const EllipsoidTree& tree,
                                                    std::span<const Evidence> evidence,
-                                                   const Contradiction& which);
+                                                   const Contradiction& which, bool paper);
+/// By the paper's rule.
+[[nodiscard]] float paper_score(const Evidence& evidence, const Contradiction& which);
 
 }  // namespace ray

@@ -26,17 +26,34 @@ std::string filled(std::string first, std::string_view text, std::size_t indent)
   return lines + line + "\n";
 }
 
+std::string joined(std::string_view text) {
+  std::string line;
+  for (const std::string& word : split_words(text))
+    line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+std::vector<std::pair<std::string, std::string>> words_of(std::string_view lines) {
+  std::vector<std::pair<std::string, std::string>> words;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    const std::string line = joined(lines.substr(0, end));
+    const std::size_t space = std::min(line.find(' '), line.size());
+    if (!line.empty()) words.emplace_back(line.substr(0, space), joined(line.substr(space)));
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  return words;
+}
+
 }  // namespace
 
-std::vector<std::string> paragraphs(std::string_view text) {
-  std::vector<std::string> found;
+std::vector<TextBlock> text_blocks(std::string_view text) {
+  std::vector<TextBlock> found;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find("\n\n"), text.size());
-    std::string paragraph;
-    for (const std::string& word : split_words(text.substr(0, end))) {
-      paragraph += (paragraph.empty() ? "" : " ") + word;
-    }
-    if (!paragraph.empty()) found.push_back(std::move(paragraph));
+    const std::string_view lines = text.substr(0, end);
+    TextBlock block = lines.starts_with("  ") ? TextBlock{{}, words_of(lines)} : TextBlock{joined(lines), {}};
+    if (!block.text.empty() || !block.words.empty()) found.push_back(std::move(block));
     text.remove_prefix(std::min(end + 2, text.size()));
   }
   return found;
@@ -44,8 +61,10 @@ std::vector<std::string> paragraphs(std::string_view text) {
 
 std::string wrapped(std::string_view text, std::size_t indent) {
   std::string lines;
-  for (const std::string& paragraph : paragraphs(text)) {
-    lines += (lines.empty() ? "" : "\n") + filled(std::string(indent, ' '), paragraph, indent);
+  for (const TextBlock& block : text_blocks(text)) {
+    lines += (lines.empty() ? "" : "\n") + (block.words.empty()
+                                                ? filled(std::string(indent, ' '), block.text, indent)
+                                                : two_columns(block.words));
   }
   return lines;
 }

@@ -59,8 +59,11 @@ std::string section(const std::string& title) {
 
 std::string prose(std::string_view text) {
   std::string out;
-  for (const std::string& paragraph : paragraphs(text))
-    out += ".PP\n" + roff(paragraph) + "\n";
+  for (const TextBlock& block : text_blocks(text)) {
+    if (block.words.empty()) out += ".PP\n" + roff(block.text) + "\n";
+    for (const auto& [word, meaning] : block.words)
+      out += ".TP\n" + bold(word) + "\n" + roff(meaning) + "\n";
+  }
   return out;
 }
 

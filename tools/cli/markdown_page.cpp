@@ -9,8 +9,12 @@ namespace {
 
 std::string prose(const std::string& text) {
   std::string out;
-  for (const std::string& paragraph : paragraphs(text))
-    out += paragraph + "\n\n";
+  for (const TextBlock& block : text_blocks(text)) {
+    if (block.words.empty()) out += block.text + "\n";
+    for (const auto& [word, meaning] : block.words)
+      out += "- `" + word + "`: " + meaning + "\n";
+    out += "\n";
+  }
   return out;
 }
 

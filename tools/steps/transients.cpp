@@ -44,9 +44,9 @@ scanner and some centimetres of error in the map do no harm.)",
                  .advanced = true}},
     .writes = "CLOUD_fixed.ply and CLOUD_transient.ply",
     .memory =
-        "130 bytes a ray. Where that is more than --memory allows, ends go to temporary files in TMPDIR or "
-        "/var/tmp, 33 bytes each, some several times, and the cloud is read twice for each block of "
-        "space; the result is the same. What lies some metres around a block takes memory too.",
+        "130 bytes a ray. Where that is more than --memory allows, ellipsoids and rays go to temporary files in "
+        "TMPDIR or /var/tmp, 300 bytes a ray or so, and blocks of space are worked on one after the other; the "
+        "result is the same. Then some 10 bytes a ray are needed besides, 14 for max, oldest and newest.",
     .see_also = {"raydenoise", "raycombine", "raysplit"}};
 
 TransientRule rule_of(const Match& match) {

@@ -91,6 +91,16 @@ TEST(documents, help_fits_eighty_columns) {
   }
 }
 
+TEST(documents, words_and_their_meanings_stand_on_lines_of_their_own) {
+  Command command = thin();
+  command.description = "Words:\n\n  first   the one\n  second  the\n  third   `next`\n\nThe end.";
+  EXPECT_THAT(help(command, HelpDepth::all),
+              HasSubstr("Words:\n\n  first   the one\n  second  the\n  third   `next`\n\nThe end.\n"));
+  EXPECT_THAT(markdown_page(command),
+              HasSubstr("Words:\n\n- `first`: the one\n- `second`: the\n- `third`: `next`\n\nThe end.\n"));
+  EXPECT_THAT(man_page(command), HasSubstr(".PP\nWords:\n.TP\n\\fBfirst\\fR\nthe one\n.TP\n"));
+}
+
 bool offers(const std::vector<std::string>& words, const std::string& candidate) {
   return ("\n" + complete(thin(), words)).find("\n" + candidate + "\t") != std::string::npos;
 }

@@ -2,6 +2,7 @@
 
 #include <raycloud/core/error.h>
 #include <raycloud/exec/spill.h>
+#include <raycloud/exec/spilled_rows.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -128,6 +129,37 @@ TEST(Spill, AFullDisk) {
   });
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
+}
+
+/// Rows of streams are read in order, again, and one from here and one from there.
+RC_GTEST_PROP(SpilledRows, giveEachStreamBackInOrder, ()) {
+  struct Row {
+    std::uint64_t stream;
+    std::uint32_t number;
+  };
+  const auto to = *rc::gen::container<std::vector<std::uint32_t>>(*rc::gen::inRange<std::size_t>(0, 3000),
+                                                                  rc::gen::inRange<std::uint32_t>(0, 7));
+  SpilledRows<Row> rows(7, 1);
+  std::vector<std::uint32_t> count(7);
+  for (const std::uint32_t stream : to) {
+    const Row row{stream, count[stream]++};
+    rows.append(stream, std::span(&row, 1));
+  }
+  const auto twice = *rc::gen::inRange<std::uint32_t>(0, 7);
+  for (int time = 0; time < 2; ++time) {
+    const std::vector<Row> all = rows.load(twice);
+    RC_ASSERT(all.size() == count[twice]);
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+      RC_ASSERT(all[i].stream == twice && all[i].number == i);
+  }
+  std::fill(count.begin(), count.end(), 0);
+  const std::size_t pieces = *rc::gen::inRange<std::size_t>(1, 500);
+  for (std::size_t begin = 0; begin < to.size(); begin += pieces) {
+    const auto wanted = std::span(to).subspan(begin, std::min(pieces, to.size() - begin));
+    const std::span<const Row> taken = rows.take(wanted);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      RC_ASSERT(taken[i].stream == wanted[i] && taken[i].number == count[wanted[i]]++);
+  }
 }
 
 }  // namespace

@@ -1,69 +1,19 @@
 /// Free space against looking at all rays and all ellipsoids.
 
+#include "all_pairs.h"
+
 #include <raycloud/exec/parallel.h>
-#include <raycloud/exec/random.h>
 #include <raycloud/volume/free_space.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <Eigen/Geometry>
-
 namespace ray {
 namespace {
 
-const TimeScale kScale(-10.0, 20.0);
+using namespace test;
 
-struct Scene {
-  std::vector<Ellipsoid> ellipsoids;
-  RayCloud rays;
-};
-
-/// Ellipsoids of all sizes and shapes, some of them flat; rays of all lengths, some of which end in them.
-Scene random_scene(std::uint64_t seed, std::size_t ellipsoids, std::size_t rays, double far) {
-  const RandomStream random(seed, "free space");
-  Scene scene;
-  const Eigen::Vector3d middle(far, -far, 0.1 * far);
-  const auto point = [&](std::uint64_t index, std::uint64_t draw, double extent) -> Eigen::Vector3d {
-    return middle + extent * Eigen::Vector3d(random.uniform(index, draw) - 0.5,
-                                             random.uniform(index, draw + 1) - 0.5,
-                                             random.uniform(index, draw + 2) - 0.5);
-  };
-  for (std::size_t i = 0; i < ellipsoids; ++i) {
-    Surfel surfel;
-    surfel.count = 17;
-    const Eigen::Vector3d centre = point(i, 0, 10.0);
-    surfel.centroid = centre;
-    surfel.normal = (point(i, 3, 1.0) - middle).normalized();
-    surfel.axis = surfel.normal.unitOrthogonal();
-    const double size = 0.03 * std::pow(20.0, random.uniform(i, 6));
-    const double flat = random.below(2, i, 7) == 0 ? 1.0 : 0.03;
-    surfel.variances = size * size * Eigen::Vector3d(0.4 * flat * flat, 0.5, 1.0);
-    const Eigen::Vector3d own = centre + size * (point(i, 8, 2.0) - middle);
-    scene.ellipsoids.push_back(ellipsoid_of(surfel, own, surfel.normal, 0.01));
-  }
-  scene.rays.resize(rays);
-  for (std::size_t i = 0; i < rays; ++i) {
-    scene.rays.starts[i] = point(i, 20, 16.0);
-    scene.rays.ends[i] = random.below(2, i, 23) == 0 && ellipsoids > 0
-                             ? Eigen::Vector3d(scene.ellipsoids[random.below(ellipsoids, i, 24)].centre +
-                                               0.02 * (point(i, 25, 1.0) - middle))
-                             : point(i, 28, 16.0);
-    if (random.below(50, i, 31) == 0) scene.rays.ends[i] = scene.rays.starts[i];
-    if (random.below(20, i, 32) == 0) scene.rays.ends[i].x() = scene.rays.starts[i].x();
-    scene.rays.times[i] = -10.0 + 30.0 / 65536.0 * (0.5 + static_cast<double>(random.below(65536, i, 33)));
-    scene.rays.bounded[i] = random.below(4, i, 34) == 0 ? 0 : 1;
-  }
-  return scene;
-}
-
-EllipsoidTree tree_of(const Context& context, const std::vector<Ellipsoid>& ellipsoids) {
-  EllipsoidTree tree(context, ellipsoids.size(), [&](std::size_t i) { return ellipsoids[i].centre; });
-  for (std::size_t i = 0; i < ellipsoids.size(); ++i)
-    tree.set(i, ellipsoids[i]);
-  tree.close(context);
-  return tree;
-}
+const TimeScale kScale(kFirstTime, kLastTime);
 
 std::vector<Evidence> counted(const Context& context, const Scene& scene, const CountRule& rule) {
   const EllipsoidTree tree = tree_of(context, scene.ellipsoids);
@@ -88,17 +38,6 @@ std::vector<Evidence> counted(const Context& context, const Scene& scene, const 
     by_index.push_back(evidence[tree.slot(i)]);
   return by_index;
 }
-
-/// In the frame in which the ellipsoid is the unit ball, by the roots of a quadratic in long double.
-struct Ball {
-  Eigen::Matrix<long double, 3, 3> to_ball;
-  const Ellipsoid& ellipsoid;
-  explicit Ball(const Ellipsoid& of)
-      : to_ball(of.shape.cast<long double>().llt().matrixL().transpose()), ellipsoid(of) {}
-  [[nodiscard]] Eigen::Matrix<long double, 3, 1> at(const Eigen::Vector3d& point) const {
-    return to_ball * (point - ellipsoid.centre).cast<long double>();
-  }
-};
 
 /// Pauses between hits that are as long as the third longest, but not longer than a look, are not looked for.
 std::vector<std::pair<double, double>> plain_episodes(std::vector<double> times, double look_time) {
@@ -129,27 +68,13 @@ PlainCounts plainly_counted(const Ellipsoid& ellipsoid, const RayCloud& rays, co
   const Ball ball(ellipsoid);
   std::vector<double> times;
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays.bounded[i] != 0 && ball.at(rays.ends[i]).squaredNorm() <= 1.0L) times.push_back(rays.times[i]);
+    if (is_hit(ball, rays, i)) times.push_back(rays.times[i]);
   sum.hits = times.size();
   const auto episodes = plain_episodes(times, rule.look_time);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto from = ball.at(rays.starts[i]), to = ball.at(rays.ends[i]);
-    const auto way = to - from;
-    const long double a = way.squaredNorm(), b = from.dot(way), c = from.squaredNorm() - 1.0L;
-    if (!(a > 0.0L) || b * b - a * c < 0.0L) continue;
-    const long double root = std::sqrt(b * b - a * c);
-    const long double enters = (-b - root) / a, leaves = (-b + root) / a;
-    if (enters <= 0.0L || leaves >= 1.0L) continue;
-    ++sum.crossings;
-    const double length = (rays.ends[i] - rays.starts[i]).norm();
-    const double beyond = static_cast<double>(1.0L - leaves) * length;
-    if ((root / std::sqrt(a)) * (root / std::sqrt(a)) < 1.0L - rule.guard.most_miss2) continue;
-    if (rays.bounded[i] != 0 && beyond < rule.guard.beyond) continue;
-    if (!ellipsoid.normal.isZero()) {
-      const double sine = std::abs(ellipsoid.normal.dot(rays.ends[i] - rays.starts[i])) / length;
-      if (sine < rule.guard.least_sine || (rays.bounded[i] != 0 && beyond * sine < rule.guard.depth))
-        continue;
-    }
+    const PlainCrossing crossing = plain_crossing(ball, rays, i, rule.guard);
+    if (crossing.crosses) ++sum.crossings;
+    if (!crossing.proves_empty) continue;
     std::size_t run = 0;
     bool within = false;
     for (const auto& [first, last] : episodes) {

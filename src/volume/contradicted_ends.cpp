@@ -1,4 +1,4 @@
-#include "seen_through.h"
+#include "contradicted_ends.h"
 
 #include "cloud_conflicts.h"
 #include "cloud_ellipsoids.h"
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> passed_slots(const Context& context, const EllipsoidT
 
 }  // namespace
 
-std::vector<float> seen_through(const Context& context, const TimedCloud& own, const TimedCloud& other) {
+std::vector<float> contradicted_ends(const Context& context, const TimedCloud& own, const TimedCloud& other) {
   const CloudEllipsoids cloud = cloud_ellipsoids(context, *own.source);
   const EllipsoidTree& tree = *cloud.tree;
   if (tree.size() == 0) return {};

@@ -18,7 +18,7 @@ struct TimedCloud {
 /// For each bounded ray of `own`, the number of rays of `other` below which it would give way if both were
 /// merged by CloudMerge::min; empty if none would. Reads `own` once or twice, `other` once or twice, and
 /// rewinds them. About 3.3 µs of one core a ray; 130 bytes a ray of `own`.
-[[nodiscard]] std::vector<float> seen_through(const Context& context, const TimedCloud& own,
-                                              const TimedCloud& other);
+[[nodiscard]] std::vector<float> contradicted_ends(const Context& context, const TimedCloud& own,
+                                                   const TimedCloud& other);
 
 }  // namespace ray
