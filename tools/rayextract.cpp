@@ -37,7 +37,7 @@ seen the mesh spans the gap.)",
                 view_option()},
     .writes = "CLOUD_mesh.ply",
     .memory =
-        "450 bytes for each cell of the map, which is about three spacings of the ends wide: less than 2 GB "
+        "450 bytes for each cell of the map, which is about two spacings of the ends wide: less than 2 GB "
         "for any cloud.",
     .see_also = {"raywrap", "raytranslate", "raysplit"}};
 

@@ -2,6 +2,7 @@
 /// The edges of a mesh as a sorted list of the sides of its faces.
 
 #include <raycloud/core/mesh.h>
+#include <raycloud/mesh/topology.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -47,5 +48,8 @@ void for_each_edge(const std::vector<FaceSide>& sides, const Visit& visit) {
     first = last;
   }
 }
+
+/// topology_of, of a mesh whose sides are known.
+[[nodiscard]] MeshTopology count_topology(const Mesh& mesh, const std::vector<FaceSide>& sides);
 
 }  // namespace ray

@@ -3,35 +3,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace ray {
-namespace {
-
-double squared_distance(const Bounds& box, const Eigen::Vector3d& point) {
-  return (box.min - point).cwiseMax(point - box.max).cwiseMax(0.0).squaredNorm();
-}
-
-/// About the middle of the box.
-template <class Ball>
-Ball ball_of(const Corners& corners) {
-  Bounds box;
-  for (const Eigen::Vector3d& corner : corners.at)
-    box.add(corner);
-  Ball ball{0.5 * (box.min + box.max), 0.0};
-  for (const Eigen::Vector3d& corner : corners.at)
-    ball.radius = std::max(ball.radius, (1.0 + 1e-12) * (corner - ball.centre).norm());
-  return ball;
-}
-
-}  // namespace
 
 /// What a node's child is.
 struct FaceTree::Part {
-  Bounds box;
+  Bounds bounds;
   std::uint32_t child = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 };
+
+FaceTree::Box FaceTree::boxed(const Bounds& bounds) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    box.low[i] = std::nextafter(static_cast<float>(bounds.min[axis] - centre_[axis]), -kInfinity);
+    box.high[i] = std::nextafter(static_cast<float>(bounds.max[axis] - centre_[axis]), kInfinity);
+  }
+  return box;
+}
+
+double FaceTree::squared_distance(const Box& box, const Eigen::Vector3d& local) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double at = local[static_cast<Eigen::Index>(i)];
+    const double away = std::max({double{box.low[i]} - at, at - double{box.high[i]}, 0.0});
+    sum += away * away;
+  }
+  return sum;
+}
 
 FaceTree::FaceTree(const Mesh& mesh) {
   Bounds all;
@@ -46,21 +49,24 @@ FaceTree::FaceTree(const Mesh& mesh) {
     all.add(box);
     centres.emplace_back(box.min + box.max);
   }
+  centre_ = 0.5 * (all.min + all.max);
   slack_ = 1e-18 * all.extent().squaredNorm();
   const Part root = build(0, static_cast<std::uint32_t>(leaves_.size()), centres);
   if (root.count > 0) {  // a mesh of few faces: a node with one child that is empty
     Node& node = nodes_.emplace_back();
-    node.boxes[0] = root.box;
+    node.boxes[0] = boxed(root.bounds);
+    node.boxes[1].low.fill(std::numeric_limits<float>::infinity());
+    node.boxes[1].high.fill(-std::numeric_limits<float>::infinity());
     node.count[0] = root.count;
   }
-  for (const Leaf& leaf : leaves_)
-    balls_.push_back(ball_of<Ball>(leaf.corners));
+  for (std::uint32_t i = 0; i < leaves_.size(); ++i)
+    boxes_.push_back(boxed(bounds_of(i, i + 1)));
   places_.resize(leaves_.size());
   for (std::uint32_t i = 0; i < leaves_.size(); ++i)
     places_[leaves_[i].face] = i;
 }
 
-Bounds FaceTree::box_of(std::uint32_t begin, std::uint32_t end) const {
+Bounds FaceTree::bounds_of(std::uint32_t begin, std::uint32_t end) const {
   Bounds box;
   for (std::uint32_t i = begin; i < end; ++i) {
     for (const Eigen::Vector3d& corner : leaves_[i].corners.at)
@@ -71,7 +77,7 @@ Bounds FaceTree::box_of(std::uint32_t begin, std::uint32_t end) const {
 
 FaceTree::Part FaceTree::build(std::uint32_t begin, std::uint32_t end,
                                const std::vector<Eigen::Vector3d>& centres) {
-  if (end - begin <= kLeafFaces) return {box_of(begin, end), 0, begin, end - begin};
+  if (end - begin <= kLeafFaces) return {bounds_of(begin, end), 0, begin, end - begin};
   Bounds spread;
   for (std::uint32_t i = begin; i < end; ++i)
     spread.add(centres[leaves_[i].face]);
@@ -90,11 +96,11 @@ FaceTree::Part FaceTree::build(std::uint32_t begin, std::uint32_t end,
   const Part parts[2] = {build(begin, begin + half, centres), build(begin + half, end, centres)};
   Bounds box;
   for (std::size_t i = 0; i < 2; ++i) {
-    nodes_[place].boxes[i] = parts[i].box;
+    nodes_[place].boxes[i] = boxed(parts[i].bounds);
     nodes_[place].child[i] = parts[i].child;
     nodes_[place].first[i] = parts[i].first;
     nodes_[place].count[i] = parts[i].count;
-    box.add(parts[i].box);
+    box.add(parts[i].bounds);
   }
   return {box, place, 0, 0};
 }
@@ -102,18 +108,18 @@ FaceTree::Part FaceTree::build(std::uint32_t begin, std::uint32_t end,
 NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, double enough) const {
   NearestFace best{
       nearest_on_face(point, leaves_[places_[near]].corners, std::numeric_limits<double>::infinity()), near};
+  const Eigen::Vector3d local = point - centre_;
   const auto bound = [&] { return best.nearest.squared * (1.0 + 1e-12) + slack_; };
-  double reach = std::sqrt(bound());
+  double reach = bound();
   const auto look_at = [&](std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t i = first; i < first + count; ++i) {
-      const double touching = reach + balls_[i].radius;
-      if ((point - balls_[i].centre).squaredNorm() > touching * touching) continue;
+      if (squared_distance(boxes_[i], local) > reach) continue;
       const NearestPlace found = nearest_on_face(point, leaves_[i].corners, bound());
       const bool wins = found.squared < best.nearest.squared ||
                         (found.squared == best.nearest.squared && leaves_[i].face < best.face);
       if (!wins) continue;
       best = {found, leaves_[i].face};
-      reach = std::sqrt(bound());
+      reach = bound();
     }
   };
   struct Waiting {
@@ -125,8 +131,8 @@ NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, dou
   std::uint32_t at = 0;
   while (best.nearest.squared >= enough) {
     const Node& node = nodes_[at];
-    const double squared[2] = {squared_distance(node.boxes[0], point),
-                               squared_distance(node.boxes[1], point)};
+    const double squared[2] = {squared_distance(node.boxes[0], local),
+                               squared_distance(node.boxes[1], local)};
     const std::size_t nearer = squared[1] < squared[0] ? 1 : 0;
     bool down = false;
     for (const std::size_t i : {1 - nearer, nearer}) {  // the nearer one comes last and is gone into next

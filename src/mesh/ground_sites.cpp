@@ -80,42 +80,120 @@ std::vector<LowLevels> columns_of(const Context& context, RaySource& source, con
   return columns;
 }
 
+/// Which level of each cell is the ground; kLevels where none is.
+class LevelChoice {
+ public:
+  LevelChoice(const std::vector<LowLevels>& cells, const PlanRaster& raster, double gradient)
+      : cells_(cells), raster_(raster), window_(std::max(kLeastWindow, gradient * raster.width)) {}
+
+  /// The lowest from level `from` on that has support.
+  [[nodiscard]] std::size_t lowest_supported(std::size_t cell, std::size_t from) const {
+    const std::int64_t rings = rings_of(cell);
+    for (std::size_t i = from; i < kLevels && cells_[cell].levels[i].count > 0; ++i)
+      if (has_support(cell, i, rings)) return i;
+    return kLevels;
+  }
+
+  /// Whether the level has few of the cell's ends and lies in a hole between the ground of the cells around.
+  [[nodiscard]] bool is_pit(std::size_t cell, const std::vector<std::size_t>& chosen) const {
+    const Level& level = cells_[cell].levels[chosen[cell]];
+    if (level.count > 1 && static_cast<double>(level.count) > kPitShare * cells_[cell].count) return false;
+    std::array<double, 8> around{};
+    std::size_t count = 0;
+    raster_.around(cell, [&](std::size_t near) {
+      if (near != cell && chosen[near] < kLevels) around[count++] = height(near, chosen[near]);
+    });
+    if (count < 3) return false;
+    std::nth_element(around.begin(), around.begin() + count / 2, around.begin() + count);
+    return height(cell, chosen[cell]) < around[count / 2] - window_;
+  }
+
+  [[nodiscard]] GroundSite site(std::size_t cell, std::size_t i) const {
+    const Level& level = cells_[cell].levels[i];
+    const Eigen::Vector2d corner = raster_.centre(cell).array() - 0.5 * raster_.width;
+    const Eigen::Vector3d mean = Eigen::Vector3d(level.sum[0], level.sum[1], level.sum[2]) / level.count;
+    return {mean + Eigen::Vector3d(corner.x(), corner.y(), level.number * level_height()), true};
+  }
+
+ private:
+  static constexpr double kPitShare = 0.25;
+  static constexpr std::uint64_t kNeighbourhood = 12;  // ends that make one
+  static constexpr std::int64_t kMostRings = 6;
+
+  /// How many rings of cells have enough ends to judge by.
+  [[nodiscard]] std::int64_t rings_of(std::size_t cell) const {
+    for (std::int64_t rings = 1; rings < kMostRings; ++rings) {
+      std::uint64_t ends = 0;
+      raster_.around(
+          cell, [&](std::size_t near) { ends += cells_[near].count; }, rings);
+      if (ends >= kNeighbourhood) return rings;
+    }
+    return kMostRings;
+  }
+
+  [[nodiscard]] bool has_support(std::size_t cell, std::size_t i, std::int64_t rings) const {
+    const auto reach =
+        static_cast<std::int64_t>(std::ceil(static_cast<double>(rings) * window_ / level_height()));
+    std::uint64_t support = 0;
+    std::uint64_t all = 0;
+    raster_.around(
+        cell,
+        [&](std::size_t near) {
+          all += cells_[near].count;
+          for (const Level& other : cells_[near].levels) {
+            const std::int64_t apart = std::int64_t{other.number} - cells_[cell].levels[i].number;
+            if (other.count > 0 && std::abs(apart) <= reach) support += other.count;
+          }
+        },
+        rings);
+    return support >= kLeastEnds && static_cast<double>(support) >= kLeastShare * static_cast<double>(all);
+  }
+
+  [[nodiscard]] double level_height() const { return 0.5 * raster_.width; }
+  [[nodiscard]] double height(std::size_t cell, std::size_t i) const {
+    const Level& level = cells_[cell].levels[i];
+    return level.number * level_height() + level.sum[2] / level.count;
+  }
+
+  const std::vector<LowLevels>& cells_;
+  const PlanRaster& raster_;
+  double window_;
+};
+
 }  // namespace
 
 std::vector<GroundSite> ground_sites(const Context& context, RaySource& source, const PlanRaster& raster,
                                      double gradient) {
-  const double level_height = 0.5 * raster.width;
-  const std::vector<LowLevels> columns = columns_of(context, source, raster, level_height);
-  const double window = std::max(kLeastWindow, gradient * raster.width);
-  const auto reach = static_cast<std::int64_t>(std::ceil(window / level_height));
+  constexpr int kRounds = 3;  // pits beside pits
+  const std::vector<LowLevels> cells = columns_of(context, source, raster, 0.5 * raster.width);
+  const LevelChoice choice(cells, raster, gradient);
+  std::vector<std::size_t> chosen(raster.size());
+  const auto for_cells = [&](const auto& visit) {
+    parallel_for(context, raster.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t cell = begin; cell < end; ++cell)
+        visit(cell);
+    });
+  };
+  for_cells([&](std::size_t cell) { chosen[cell] = choice.lowest_supported(cell, 0); });
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::size_t> better = chosen;
+    for_cells([&](std::size_t cell) {
+      if (chosen[cell] < kLevels && choice.is_pit(cell, chosen))
+        better[cell] = choice.lowest_supported(cell, chosen[cell] + 1);
+    });
+    if (better == chosen) break;
+    chosen = std::move(better);
+  }
   std::vector<GroundSite> sites(raster.size());
-  parallel_for(context, raster.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      for (const Level& level : columns[cell].levels) {
-        if (level.count == 0) break;
-        std::uint64_t support = 0;
-        std::uint64_t all = 0;
-        raster.around(cell, [&](std::size_t near) {
-          all += columns[near].count;
-          for (const Level& other : columns[near].levels) {
-            if (other.count == 0) break;
-            if (std::abs(std::int64_t{other.number} - level.number) <= reach) support += other.count;
-          }
-        });
-        if (support < kLeastEnds || static_cast<double>(support) < kLeastShare * static_cast<double>(all))
-          continue;
-        const Eigen::Vector2d corner = raster.centre(cell).array() - 0.5 * raster.width;
-        const Eigen::Vector3d mean = Eigen::Vector3d(level.sum[0], level.sum[1], level.sum[2]) / level.count;
-        sites[cell] = {mean + Eigen::Vector3d(corner.x(), corner.y(), level.number * level_height), true};
-        break;
-      }
-    }
+  for_cells([&](std::size_t cell) {
+    if (chosen[cell] < kLevels) sites[cell] = choice.site(cell, chosen[cell]);
   });
   return sites;
 }
 
 void remove_raised(std::vector<GroundSite>& sites, const PlanRaster& raster, double gradient) {
   constexpr double kStep = 0.15;  // m; no step at all
+  constexpr double kRaisedShare = 0.75;
   DisjointSets parts(sites.size());
   const auto connected = [&](const GroundSite& a, const GroundSite& b) {
     const Eigen::Vector3d between = b.place - a.place;
@@ -135,20 +213,23 @@ void remove_raised(std::vector<GroundSite>& sites, const PlanRaster& raster, dou
     if (sites[cell].is_there) ++size[part[cell]];
   }
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  std::vector<std::int32_t> raised(sites.size());
+  std::vector<std::uint32_t> borders(sites.size());
+  std::vector<std::uint32_t> raised(sites.size());  // borders where the part is higher
   for (bool changed = true; changed;) {
     changed = false;
-    std::fill(raised.begin(), raised.end(),
-              0);  // borders where the part is higher, less those where it is lower
+    std::fill(borders.begin(), borders.end(), 0);
+    std::fill(raised.begin(), raised.end(), 0);
     for (std::size_t cell = 0; cell < sites.size(); ++cell) {
       if (!sites[cell].is_there) continue;
       raster.around(cell, [&](std::size_t near) {
         if (!sites[near].is_there || part[near] == part[cell]) return;
-        raised[part[cell]] += sites[cell].place.z() > sites[near].place.z() ? 1 : -1;
+        ++borders[part[cell]];
+        if (sites[cell].place.z() > sites[near].place.z()) ++raised[part[cell]];
       });
     }
     for (std::size_t cell = 0; cell < sites.size(); ++cell) {
-      if (!sites[cell].is_there || part[cell] == largest || raised[part[cell]] <= 0) continue;
+      if (!sites[cell].is_there || part[cell] == largest) continue;
+      if (raised[part[cell]] <= kRaisedShare * borders[part[cell]]) continue;
       sites[cell].is_there = false;
       changed = true;
     }

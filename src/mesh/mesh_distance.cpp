@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace ray {
 namespace {
@@ -22,7 +23,7 @@ double angle_at(const Eigen::Vector3d& corner, const Eigen::Vector3d& b, const E
   return std::atan2((b - corner).cross(c - corner).norm(), (b - corner).dot(c - corner));
 }
 
-PseudoNormals pseudo_normals(const Mesh& mesh) {
+PseudoNormals pseudo_normals(const Mesh& mesh, const std::vector<FaceSide>& sides) {
   PseudoNormals normals;
   normals.of_vertex.assign(mesh.vertices.size(), Eigen::Vector3d::Zero());
   normals.of_side.resize(mesh.faces.size());
@@ -37,7 +38,7 @@ PseudoNormals pseudo_normals(const Mesh& mesh) {
     normals.of_vertex[face[1]] += angle_at(b, c, a) * normal;
     normals.of_vertex[face[2]] += angle_at(c, a, b) * normal;
   }
-  for_each_edge(sorted_sides(mesh), [&](const FaceSide* first, const FaceSide* last) {
+  for_each_edge(sides, [&](const FaceSide* first, const FaceSide* last) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const FaceSide* side = first; side < last; ++side)
       sum += normals.of_face[side->face];
@@ -47,19 +48,24 @@ PseudoNormals pseudo_normals(const Mesh& mesh) {
   return normals;
 }
 
-Mesh oriented(Mesh mesh) {
-  orient(mesh);
-  return mesh;
-}
+/// A mesh as turned, with its sides.
+struct OrientedMesh {
+  explicit OrientedMesh(Mesh given) : mesh(std::move(given)), sides(sorted_sides(mesh)) {
+    orient(mesh, sides);
+  }
+  Mesh mesh;
+  std::vector<FaceSide> sides;
+};
 
 }  // namespace
 
 struct MeshDistance::Impl {
-  explicit Impl(WeldedMesh welded)
-      : mesh(oriented(std::move(welded.mesh))),
-        without_area(welded.without_area),
-        topology(topology_of(mesh)),
-        normals(pseudo_normals(mesh)),
+  explicit Impl(WeldedMesh welded) : Impl(OrientedMesh(std::move(welded.mesh)), welded.without_area) {}
+  Impl(OrientedMesh oriented, std::size_t faces_left_out)
+      : mesh(std::move(oriented.mesh)),
+        without_area(faces_left_out),
+        topology(count_topology(mesh, oriented.sides)),
+        normals(pseudo_normals(mesh, oriented.sides)),
         tree(mesh) {}
 
   [[nodiscard]] const Eigen::Vector3d& normal_at(const NearestFace& found) const {

@@ -1,7 +1,5 @@
 #include "orient.h"
 
-#include "edges.h"
-
 #include <Eigen/Geometry>
 #include <array>
 #include <limits>
@@ -17,42 +15,52 @@ struct FaceNeighbour {
   bool agrees = true;
 };
 
-void turn(Mesh::Face& face) {
-  std::swap(face[1], face[2]);
+/// Faces to be turned over.
+using TurnedFaces = std::vector<std::uint8_t>;
+
+void turn(const TurnedFaces& turned, Mesh& mesh, std::vector<FaceSide>& sides) {
+  for (std::size_t f = 0; f < turned.size(); ++f)
+    if (turned[f] != 0) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+  for (FaceSide& side : sides) {
+    if (turned[side.face] == 0) continue;
+    side.side = static_cast<std::uint8_t>(2 - side.side);
+    side.forwards = !side.forwards;
+  }
 }
 
-void make_neighbours_agree(Mesh& mesh) {
+/// Those that do not agree with the first face of their part.
+TurnedFaces disagreeing(const Mesh& mesh, const std::vector<FaceSide>& sides) {
   std::vector<std::array<FaceNeighbour, 3>> neighbours(mesh.faces.size());
-  for_each_edge(sorted_sides(mesh), [&](const FaceSide* first, const FaceSide* last) {
+  for_each_edge(sides, [&](const FaceSide* first, const FaceSide* last) {
     if (last - first != 2) return;
     const bool agree = first[0].forwards != first[1].forwards;
     neighbours[first[0].face][first[0].side] = {first[1].face, agree};
     neighbours[first[1].face][first[1].side] = {first[0].face, agree};
   });
-  enum : std::uint8_t { unseen, kept, turned };
-  std::vector<std::uint8_t> state(mesh.faces.size(), unseen);
+  TurnedFaces turned(mesh.faces.size(), 0);
+  std::vector<std::uint8_t> seen(mesh.faces.size(), 0);
   std::vector<std::uint32_t> front;
   for (std::uint32_t seed = 0; seed < mesh.faces.size(); ++seed) {
-    if (state[seed] != unseen) continue;
-    state[seed] = kept;
+    if (seen[seed] != 0) continue;
+    seen[seed] = 1;
     front.assign(1, seed);
     while (!front.empty()) {
       const std::uint32_t face = front.back();
       front.pop_back();
       for (const FaceNeighbour& neighbour : neighbours[face]) {
-        if (neighbour.face == kNoFace || state[neighbour.face] != unseen) continue;
-        state[neighbour.face] = (state[face] == kept) == neighbour.agrees ? kept : turned;
+        if (neighbour.face == kNoFace || seen[neighbour.face] != 0) continue;
+        seen[neighbour.face] = 1;
+        turned[neighbour.face] = neighbour.agrees ? turned[face] : !turned[face];
         front.push_back(neighbour.face);
       }
     }
   }
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if (state[f] == turned) turn(mesh.faces[f]);
+  return turned;
 }
 
-bool shows_its_back(const Mesh& mesh) {
+bool shows_its_back(const Mesh& mesh, const std::vector<FaceSide>& sides) {
   bool closed = true;
-  for_each_edge(sorted_sides(mesh),
+  for_each_edge(sides,
                 [&](const FaceSide* first, const FaceSide* last) { closed = closed && last - first >= 2; });
   const Eigen::Vector3d& origin = mesh.vertices.front();  // far from 0,0,0 the volumes would drown
   double volume = 0.0;
@@ -70,11 +78,9 @@ bool shows_its_back(const Mesh& mesh) {
 
 }  // namespace
 
-void orient(Mesh& mesh) {
-  make_neighbours_agree(mesh);
-  if (!shows_its_back(mesh)) return;
-  for (Mesh::Face& face : mesh.faces)
-    turn(face);
+void orient(Mesh& mesh, std::vector<FaceSide>& sides) {
+  turn(disagreeing(mesh, sides), mesh, sides);
+  if (shows_its_back(mesh, sides)) turn(TurnedFaces(mesh.faces.size(), 1), mesh, sides);
 }
 
 }  // namespace ray

@@ -32,14 +32,14 @@ struct PlanRaster {
     const auto column = static_cast<std::int64_t>(cell) % columns;
     return low + width * Eigen::Vector2d(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
   }
-  /// Calls `visit(cell)` for the cell and the up to eight around it.
+  /// Calls `visit(cell)` for the cell and the up to eight around it, or more `rings`.
   template <class Visit>
-  void around(std::size_t cell, const Visit& visit) const {
+  void around(std::size_t cell, const Visit& visit, std::int64_t rings = 1) const {
     const auto row = static_cast<std::int64_t>(cell) / columns;
     const auto column = static_cast<std::int64_t>(cell) % columns;
-    for (std::int64_t r = std::max<std::int64_t>(row - 1, 0); r <= std::min(row + 1, rows - 1); ++r) {
-      for (std::int64_t c = std::max<std::int64_t>(column - 1, 0); c <= std::min(column + 1, columns - 1);
-           ++c)
+    for (std::int64_t r = std::max<std::int64_t>(row - rings, 0); r <= std::min(row + rings, rows - 1); ++r) {
+      for (std::int64_t c = std::max<std::int64_t>(column - rings, 0);
+           c <= std::min(column + rings, columns - 1); ++c)
         visit(index(c, r));
     }
   }

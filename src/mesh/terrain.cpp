@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kSample = 100'000;
 constexpr double kMostCells = 4194304.0;
 constexpr double kLeastCell = 0.1;     // m
-constexpr double kCellSpacings = 3.0;  // of points
+constexpr double kCellSpacings = 2.0;  // of points
 
 struct TerrainSurvey {
   StreamCounts stream;

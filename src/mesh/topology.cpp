@@ -31,6 +31,10 @@ std::size_t count_pinched(const Mesh& mesh, DisjointSets& corners) {
 }  // namespace
 
 MeshTopology topology_of(const Mesh& mesh) {
+  return count_topology(mesh, sorted_sides(mesh));
+}
+
+MeshTopology count_topology(const Mesh& mesh, const std::vector<FaceSide>& sides) {
   MeshTopology topology;
   topology.faces = mesh.faces.size();
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
@@ -48,7 +52,7 @@ MeshTopology topology_of(const Mesh& mesh) {
     const bool first = mesh.faces[side.face][side.side] == vertex;
     return 3 * side.face + (first ? side.side : (side.side + 1u) % 3u);
   };
-  for_each_edge(sorted_sides(mesh), [&](const FaceSide* first, const FaceSide* last) {
+  for_each_edge(sides, [&](const FaceSide* first, const FaceSide* last) {
     ++topology.edges;
     if (last - first == 1) {
       ++topology.border_edges;

@@ -27,7 +27,7 @@ struct Terrain {
 /// below the ground are told by their lack of company, things on it by the gradient, and noise by the height
 /// at which most ends lie.
 ///
-/// Reads the source three times, rewinding it. Memory: 450 bytes a cell, which is about three point spacings
+/// Reads the source three times, rewinding it. Memory: 450 bytes a cell, which is about two point spacings
 /// wide; at most 2^22 cells, and wider ones where that is not enough. The result depends on neither threads
 /// nor chunks. Throws Error(usage) for options out of range; Error(no_data) without bounded rays, or where
 /// no ground is found (all ends on one line of the map).
