@@ -4,6 +4,7 @@
 
 #include <raycloud/mesh/cone_envelope.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,6 +81,28 @@ std::vector<LowLevels> columns_of(const Context& context, RaySource& source, con
   return columns;
 }
 
+/// A plane through points by least squares.
+struct PlaneFit {
+  int count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+
+  void add(const Eigen::Vector3d& point) {
+    ++count;
+    sum += point;
+    products += point * point.transpose();
+  }
+  [[nodiscard]] double height_at_origin() const {
+    const Eigen::Vector3d mean = sum / count;
+    const Eigen::Matrix3d spread = products - count * mean * mean.transpose();
+    const Eigen::Matrix2d plan = spread.topLeftCorner<2, 2>();
+    const double extent = plan.trace();
+    if (!(plan.determinant() > 0.01 * extent * extent)) return mean.z();  // all on a line
+    const Eigen::Vector2d slope = plan.inverse() * spread.topRightCorner<2, 1>();
+    return mean.z() - slope.dot(mean.head<2>());
+  }
+};
+
 /// Which level of each cell is the ground; kLevels where none is.
 class LevelChoice {
  public:
@@ -94,18 +117,24 @@ class LevelChoice {
     return kLevels;
   }
 
-  /// Whether the level has few of the cell's ends and lies in a hole between the ground of the cells around.
+  /// Whether the level has few of the cell's ends and lies in a hole below the plane through the sites
+  /// around.
   [[nodiscard]] bool is_pit(std::size_t cell, const std::vector<std::size_t>& chosen) const {
     const Level& level = cells_[cell].levels[chosen[cell]];
     if (level.count > 1 && static_cast<double>(level.count) > kPitShare * cells_[cell].count) return false;
-    std::array<double, 8> around{};
-    std::size_t count = 0;
-    raster_.around(cell, [&](std::size_t near) {
-      if (near != cell && chosen[near] < kLevels) around[count++] = height(near, chosen[near]);
-    });
-    if (count < 3) return false;
-    std::nth_element(around.begin(), around.begin() + count / 2, around.begin() + count);
-    return height(cell, chosen[cell]) < around[count / 2] - window_;
+    const Eigen::Vector3d own = site(cell, chosen[cell]).place;
+    for (std::int64_t rings = 1; rings <= kMostRings; ++rings) {
+      PlaneFit fit;
+      raster_.around(
+          cell,
+          [&](std::size_t near) {
+            if (near != cell && chosen[near] < kLevels) fit.add(site(near, chosen[near]).place - own);
+          },
+          rings);
+      if (fit.count < kPitNeighbours) continue;
+      return fit.height_at_origin() > std::max(kLeastPit, kPitDepth * static_cast<double>(rings) * window_);
+    }
+    return false;
   }
 
   [[nodiscard]] GroundSite site(std::size_t cell, std::size_t i) const {
@@ -117,6 +146,9 @@ class LevelChoice {
 
  private:
   static constexpr double kPitShare = 0.25;
+  static constexpr int kPitNeighbours = 6;
+  static constexpr double kLeastPit = 0.2;   // m
+  static constexpr double kPitDepth = 0.35;  // of the height that the gradient gives over the neighbourhood
   static constexpr std::uint64_t kNeighbourhood = 12;  // ends that make one
   static constexpr std::int64_t kMostRings = 6;
 
@@ -150,11 +182,6 @@ class LevelChoice {
   }
 
   [[nodiscard]] double level_height() const { return 0.5 * raster_.width; }
-  [[nodiscard]] double height(std::size_t cell, std::size_t i) const {
-    const Level& level = cells_[cell].levels[i];
-    return level.number * level_height() + level.sum[2] / level.count;
-  }
-
   const std::vector<LowLevels>& cells_;
   const PlanRaster& raster_;
   double window_;
