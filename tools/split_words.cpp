@@ -1,6 +1,11 @@
 #include "split_words.h"
 
+#include "mesh_words.h"
+
 #include <raycloud/io/tree_file.h>
+
+#include <memory>
+#include <string>
 
 namespace ray::tools {
 
@@ -52,13 +57,47 @@ std::vector<Usage> split_in_two_usages() {
        .words = {cloud(), literal("gap"), number("G", kPositive)},
        .help = "inside: the largest set of ends connected by steps shorter than G metres",
        .example = "raysplit cloud.ply gap 0.1"},
-      {.name = "trees",
-       .words = {cloud(), input("TREES", {".txt"}), literal("distance"), number("D")},
-       .help = "inside: ends further than D metres from the trees of the file",
-       .example = "raysplit cloud.ply cloud_trees.txt distance 0.2"}};
+      {.name = "shape",
+       .words = {cloud(), input("SHAPE", {".ply", ".obj", ".txt"}), literal("distance"), number("D")},
+       .help = "inside: ends further than D metres above or outside a mesh, or from the trees of a .txt file",
+       .example = "raysplit cloud.ply cloud_mesh.ply distance 0.5"}};
 }
 
-SplitRulePtr split_rule(const Match& match, const Context& context, RaySource& source) {
+namespace {
+
+/// What users should know of a mesh that has, or may have, no inside.
+void tell(const MeshDistance& mesh, const std::string& name, std::vector<std::string>& notes) {
+  const MeshTopology& topology = mesh.topology();
+  const auto note = [&](std::size_t count, const std::string& one, const std::string& many) {
+    if (count > 0) notes.push_back(name + " has " + std::to_string(count) + " " + (count == 1 ? one : many));
+  };
+  note(mesh.faces_without_area(), "face without an area, left out", "faces without an area, left out");
+  note(topology.tangled_edges, "edge of three faces or more: sides may be wrong near it",
+       "edges of three faces or more: sides may be wrong near them");
+  note(topology.reversed_edges, "edge where front meets back, as on a one-sided band",
+       "edges where front meets back, as on a one-sided band");
+  note(topology.border_loops, "border: it is open, and a plane goes on beyond a border",
+       "borders or holes: it is open, and planes go on beyond them");
+}
+
+SplitRulePtr split_by_shape(const Match& match, std::vector<std::string>& notes) {
+  const std::string& name = match.text("SHAPE");
+  const double most = match.number("D");
+  const auto dot = name.find_last_of('.');
+  const std::string extension = dot == std::string::npos ? "" : name.substr(dot);
+  if (extension != ".ply" && extension != ".PLY" && extension != ".obj" && extension != ".OBJ")
+    return split_by_trees(read_trees(name), {most});
+  const auto distance = std::make_shared<const MeshDistance>(mesh_distance(name));
+  tell(*distance, name, notes);
+  return split_by_test([distance, most](const RayCloud& rays, std::span<std::uint8_t> inside) {
+    distance->are_beyond(rays.ends, most, inside);
+  });
+}
+
+}  // namespace
+
+SplitRulePtr split_rule(const Match& match, const Context& context, RaySource& source,
+                        std::vector<std::string>& notes) {
   const std::string& form = match.usage();
   const Precision stored = source.info().precision;
   if (form == "plane") return split_by_plane(match.vector("X,Y,Z"), stored);
@@ -91,7 +130,7 @@ SplitRulePtr split_rule(const Match& match, const Context& context, RaySource& s
     source.rewind();
     return rule;
   }
-  return split_by_trees(read_trees(match.text("TREES")), {match.number("D")});
+  return split_by_shape(match, notes);
 }
 
 }  // namespace ray::tools

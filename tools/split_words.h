@@ -6,6 +6,7 @@
 
 #include <raycloud/filter/split.h>
 
+#include <string>
 #include <vector>
 
 namespace ray::tools {
@@ -14,7 +15,8 @@ namespace ray::tools {
 [[nodiscard]] std::vector<cli::Usage> split_in_two_usages();
 
 /// The rule that a match of one of them asks for. Rules that need the whole cloud first (a share of the time,
-/// the gap) read `source` and rewind it.
-[[nodiscard]] SplitRulePtr split_rule(const cli::Match& match, const Context& context, RaySource& source);
+/// the gap) read `source` and rewind it. `notes` gets what the user should hear of a mesh.
+[[nodiscard]] SplitRulePtr split_rule(const cli::Match& match, const Context& context, RaySource& source,
+                                      std::vector<std::string>& notes);
 
 }  // namespace ray::tools

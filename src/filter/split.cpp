@@ -51,7 +51,29 @@ double squared_length(const Eigen::Vector3d& v, const char* message) {
   return squared;
 }
 
+class TestedChunks final : public SplitRule {
+ public:
+  explicit TestedChunks(RayTest test) : test_(std::move(test)) {}
+  std::vector<ColumnInfo> columns(std::vector<ColumnInfo> source) const override { return source; }
+  void apply(RayCloud& rays, std::vector<std::uint32_t>& inside,
+             std::vector<std::uint32_t>& outside) const override {
+    std::vector<std::uint8_t> mask(rays.size(), 0);
+    test_(rays, mask);
+    inside.clear();
+    outside.clear();
+    for (std::uint32_t i = 0; i < mask.size(); ++i)
+      (mask[i] != 0 ? inside : outside).push_back(i);
+  }
+
+ private:
+  RayTest test_;
+};
+
 }  // namespace
+
+SplitRulePtr split_by_test(RayTest test) {
+  return std::make_unique<TestedChunks>(std::move(test));
+}
 
 SplitRulePtr split_by_range(Metres range) {
   require(std::isfinite(range.value) && range.value >= 0.0, "the range must be 0 or more");

@@ -135,6 +135,9 @@ raypipe $1 colour height : translate 1,2,3
 raysmooth $1
 raypipe $1 smooth : colour time
 rayrender $1 top ends
+raywrap $1 upwards 0.1
+raywrap $1 inwards 0
+rayextract terrain $1
 END
 }
 
@@ -159,6 +162,29 @@ binary_cloud() {
   make_cloud "$1.ascii.ply" "$2"
   raydecimate -q "$1.ascii.ply" 1 ray -o "$1"
   rm "$1.ascii.ply"
+}
+
+# make_ground FILE: an ascii mesh, 20 m by 20 m around the origin, two triangles that rise by 1 m in 10 towards +x.
+make_ground() {
+  {
+    printf 'ply\nformat ascii 1.0\nelement vertex 4\n'
+    printf 'property double %s\n' x y z
+    printf 'element face 2\nproperty list uchar int vertex_indices\nend_header\n'
+    printf '%s\n' '-10 -10 -1' '10 -10 1' '10 10 1' '-10 10 -1' '3 0 1 2' '3 0 2 3'
+  } >"$1"
+}
+
+# bad_meshes: in this folder, files that are no mesh that one could use, each named after what is wrong with it.
+bad_meshes() {
+  make_ground ground.ply
+  sed 's/^3 0 1 2$/3 0 1 9/' ground.ply >index.ply
+  sed 's/^10 10 1$/10 nan 1/' ground.ply >nan.ply
+  sed 's/^3 0 1 2$/3 0 1 1/; s/^3 0 2 3$/3 3 2 3/' ground.ply >no_area.ply
+  sed 's/^element face 2/element face 0/; /^3 /d' ground.ply >no_faces.ply
+  head -n 12 ground.ply >cut.ply
+  : >empty.ply
+  printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n' >index.obj
+  rm ground.ply
 }
 
 # board_scan BOARD BEGIN FILE COLUMN: 10 000 rays in 25 s from BEGIN on, at a wall and, if BOARD is 1, at a board before

@@ -30,6 +30,8 @@ inline constexpr std::array kCommands{
     ListedCommand{"raycombine", "put ray clouds together"},
     ListedCommand{"raydiff", "what came and what went between two ray clouds"},
     ListedCommand{"rayrender", "picture a ray cloud"},
+    ListedCommand{"raywrap", "wrap a ray cloud in a mesh"},
+    ListedCommand{"rayextract", "find the ground in a ray cloud"},
 };
 
 }  // namespace ray::cli

@@ -1,3 +1,4 @@
+#include "mesh_words.h"
 #include "steps.h"
 
 #include <raycloud/core/pose.h>
@@ -16,18 +17,26 @@ const Command kTranslate{
     .summary = "move a ray cloud, in place",
     .description =
         R"(Adds an offset in metres to the starts and ends of all rays and, with a fourth number, seconds to
-their times. The file itself is changed: moving by the opposite offset undoes it. The new file
-replaces the old one only when it is complete and safely on the disk.
+their times. With a mesh, adds its height at each place or takes it away: `subtract` makes a ground flat, so
+that z is the height above it. Where the mesh has several surfaces above each other the highest counts, and
+beside it the height of its nearest edge. The file itself is changed: moving by the opposite offset undoes
+it, and so does `add` after `subtract`. The new file replaces the old one only when it is complete and safely
+on the disk.
 
 A file with coordinates in single precision becomes double where the new coordinates would lose more
 than 25 micrometres.)",
-    .usages = {{.words = {cloud(), vector("X,Y,Z[,T]")},
+    .usages = {{.name = "offset",
+                .words = {cloud(), vector("X,Y,Z[,T]")},
                 .help = "by metres along each axis, and seconds",
-                .example = "raytranslate cloud.ply 0,0,-1.5"}},
+                .example = "raytranslate cloud.ply 0,0,-1.5"},
+               {.name = "heights",
+                .words = {cloud(), choice("WAY", {"add", "subtract"}), input("MESH", {".ply", ".obj"})},
+                .help = "up or down by the height of the mesh at each place",
+                .example = "raytranslate cloud.ply subtract cloud_mesh.ply"}},
     .options = {view_option()},
     .writes = "CLOUD itself",
-    .memory = "Less than 200 MB for any cloud.",
-    .see_also = {"rayrotate"}};
+    .memory = "Less than 200 MB for any cloud, and 150 bytes for each face of a mesh.",
+    .see_also = {"rayrotate", "rayextract"}};
 
 const Command kRotate{
     .name = "rayrotate",
@@ -73,15 +82,35 @@ bool is_nothing(const Move& move) {
   return move.pose.is_identity() && move.time_shift.value == 0.0;
 }
 
-StepReport run(const Context& context, RaySource& source, const SinkMaker& make, const Move& move,
-               double loss) {
+CloudInfo info_losing(const RaySource& source, double loss) {
   CloudInfo info = source.info();
   const double step = info.coordinate_step;
   info.coordinate_step = step > 0.0 ? std::min(step, 2.0 * loss) : 2.0 * loss;
-  return report_of(transform_cloud(context, source, make(0, info), move.pose, move.time_shift));
+  return info;
+}
+
+StepReport run(const Context& context, RaySource& source, const SinkMaker& make, const Move& move,
+               double loss) {
+  RaySink& sink = make(0, info_losing(source, loss));
+  return report_of(transform_cloud(context, source, sink, move.pose, move.time_shift));
+}
+
+StepReport move_heights(const Match& match, const Context& context, RaySource& source,
+                        const SinkMaker& make) {
+  const MeshHeight mesh = mesh_height(match.text("MESH"));
+  RaySink& sink = make(0, info_losing(source, kTranslationLoss));
+  const double factor = match.text("WAY") == "add" ? 1.0 : -1.0;
+  const HeightShift shift = shift_by_height(context, source, sink, mesh, factor);
+  StepReport report = report_of(shift.stream);
+  if (shift.beyond > 0) {
+    report.notes.push_back(std::to_string(shift.beyond) + (shift.beyond == 1 ? " ray ends" : " rays end") +
+                           " beside the mesh, where the height of its nearest edge is taken");
+  }
+  return report;
 }
 
 StepReport translate(const Match& match, const Context& context, RaySource& source, const SinkMaker& make) {
+  if (match.usage() == "heights") return move_heights(match, context, source, make);
   return run(context, source, make, translation_of(match), kTranslationLoss);
 }
 
@@ -93,7 +122,7 @@ StepReport rotate(const Match& match, const Context& context, RaySource& source,
 
 const Step kTranslateStep{
     .command = kTranslate, .outputs = {{"", ""}}, .run = translate, .does_nothing = [](const Match& match) {
-      return is_nothing(translation_of(match));
+      return match.usage() == "offset" && is_nothing(translation_of(match));
     }};
 
 const Step kRotateStep{

@@ -44,7 +44,9 @@ or of its end point and sort rays whole.
 
 Grid cells are centred on the origin: cell i spans (i - 1/2) w to (i + 1/2) w, and the names of the files have
 the indices of the axes that are split. With an overlap each cell grows by half of it on every side, so
-rays near a border are in several clouds. In `gap`, unbounded rays are outside. `colour` and `raydir`
+rays near a border are in several clouds. The distance from a mesh has a sign: above an open mesh and outside
+a closed one it is positive, so what lies within half a metre above a ground is outside of `distance 0.5`.
+In `gap`, unbounded rays are outside. `colour` and `raydir`
 compare the part of the vector along the one given: half of red is `colour 0.5,0,0`, rays steeper than 53
 degrees upwards are outside of `raydir 0,0,0.8`.)",
     .usages = usages(),
@@ -52,25 +54,28 @@ degrees upwards are outside of `raydir 0,0,0.8`.)",
     .writes = "CLOUD_inside.ply and CLOUD_outside.ply, or a cloud for each cell or colour",
     .memory =
         "Less than 200 MB for any cloud, and some kilobytes for each cloud written. `gap` takes 96 bytes "
-        "for each bounded ray.",
+        "for each bounded ray, a mesh 400 bytes for each face.",
     .see_also = {"raycombine", "raydecimate"}};
 
 StepReport run(const Match& match, const Context& context, RaySource& source, const SinkMaker& make) {
   if (splits_in_parts(match))
     throw Error(ErrorCode::usage,
                 "split " + match.usage() + " makes many clouds, so it is no step of a pipe");
-  const SplitRulePtr rule = split_rule(match, context, source);
+  StepReport report;
+  const SplitRulePtr rule = split_rule(match, context, source, report.notes);
   CloudInfo info = source.info();
   info.extras = rule->columns(std::move(info.extras));
   RaySink& inside = make(0, info);
   const SplitCounts counts = split_cloud(context, source, *rule, inside, make(1, info));
-  return {.counts = counts.stream, .rays_out = {counts.inside, counts.outside}, .notes = {}};
+  report.counts = counts.stream;
+  report.rays_out = {counts.inside, counts.outside};
+  return report;
 }
 
 /// Whether rays are judged by what the match says alone; other rules are made from the whole cloud first, or
 /// from a file, which would be read again for each piece.
 bool by_ray(const Match& match) {
-  static const std::set<std::string, std::less<>> kNot{"time_share", "gap", "trees"};
+  static const std::set<std::string, std::less<>> kNot{"time_share", "gap", "shape"};
   return !splits_in_parts(match) && !kNot.contains(match.usage());
 }
 

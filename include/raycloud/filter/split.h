@@ -17,7 +17,9 @@
 #include <raycloud/exec/stream.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace ray {
@@ -82,6 +84,13 @@ using SplitRulePtr = std::unique_ptr<const SplitRule>;
 /// ends; a tree of one segment is a sphere. Memory: the segments, and 4 bytes for each cube of a coarse grid
 /// that one is near.
 [[nodiscard]] SplitRulePtr split_by_trees(const Forest& forest, Metres distance);
+
+/// Decides for all rays of a chunk: `inside`, one byte a ray, 0 before, gets 1 where the ray is inside.
+/// Called by any number of threads at once; must judge each ray by itself.
+using RayTest = std::function<void(const RayCloud& rays, std::span<std::uint8_t> inside)>;
+
+/// Inside is what the test says: for properties that other rooms know, such as the distance from a mesh.
+[[nodiscard]] SplitRulePtr split_by_test(RayTest test);
 
 /// The time at `fraction` of the way from the earliest ray to the latest. Reads the source to its end; rewind
 /// it before the split. 0 for a cloud without rays. Precondition by Error(usage): 0 <= fraction <= 1.

@@ -1,0 +1,101 @@
+#include <raycloud/mesh/cone_envelope.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ray {
+namespace {
+
+/// Points in a tree of plan cells that halve in turn along x and y, with the lowest of each.
+class LowestTree {
+ public:
+  explicit LowestTree(std::span<const Eigen::Vector3d> points) : points_(points), order_(points.size()) {
+    for (std::uint32_t i = 0; i < order_.size(); ++i)
+      order_[i] = i;
+    build(0, static_cast<std::uint32_t>(order_.size()));
+  }
+
+  /// Whether some point is below the cone of p.
+  [[nodiscard]] bool has_below(const Eigen::Vector3d& p, double gradient) const {
+    std::uint32_t waiting[64];
+    std::size_t count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+      const Node& node = nodes_[waiting[--count]];
+      const Eigen::Vector2d place = p.head<2>();
+      const double away = (node.low - place).cwiseMax(place - node.high).cwiseMax(0.0).norm();
+      // Rounding must not hide a point.
+      if (node.lowest + gradient * away * (1.0 - 1e-14) >
+          p.z() + 1e-14 * (std::abs(p.z()) + std::abs(node.lowest)))
+        continue;
+      if (node.end - node.begin > kLeaf) {
+        // The half that is nearer is looked at first.
+        const Node& first = nodes_[node.first];
+        const bool in_first =
+            (place.array() >= first.low.array()).all() && (place.array() <= first.high.array()).all();
+        waiting[count++] = in_first ? node.second : node.first;
+        waiting[count++] = in_first ? node.first : node.second;
+        continue;
+      }
+      for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        const Eigen::Vector3d& q = points_[order_[i]];
+        if (q.z() + gradient * (q - p).head<2>().norm() < p.z()) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kLeaf = 8;
+  struct Node {
+    Eigen::Vector2d low, high;
+    double lowest = std::numeric_limits<double>::infinity();
+    std::uint32_t begin = 0, end = 0;
+    std::uint32_t first = 0, second = 0;
+  };
+
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
+    const auto place = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    Node node;
+    node.begin = begin;
+    node.end = end;
+    node.low.setConstant(std::numeric_limits<double>::infinity());
+    node.high = -node.low;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d& point = points_[order_[i]];
+      node.low = node.low.cwiseMin(point.head<2>());
+      node.high = node.high.cwiseMax(point.head<2>());
+      node.lowest = std::min(node.lowest, point.z());
+    }
+    if (end - begin > kLeaf) {
+      const int axis = node.high.x() - node.low.x() >= node.high.y() - node.low.y() ? 0 : 1;
+      const std::uint32_t middle = begin + (end - begin) / 2;
+      const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::nth_element(at(begin), at(middle), at(end),
+                       [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
+      node.first = build(begin, middle);
+      node.second = build(middle, end);
+    }
+    nodes_[place] = node;
+    return place;
+  }
+
+  std::span<const Eigen::Vector3d> points_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> cone_envelope(std::span<const Eigen::Vector3d> points, double gradient) {
+  std::vector<std::uint8_t> ground(points.size(), 0);
+  if (points.empty()) return ground;
+  const LowestTree tree(points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
+  return ground;
+}
+
+}  // namespace ray

@@ -1,0 +1,16 @@
+#pragma once
+/// A mesh of as few of many heights as describe them.
+
+#include <raycloud/core/mesh.h>
+
+#include <vector>
+
+namespace ray {
+
+/// The Delaunay triangulation (in plan) of some of the points, with fronts upwards, of which no point is
+/// further than `tolerance` above or below: one by one the worst is added (greedy insertion; Garland and
+/// Heckbert, 1995). It covers the convex hull of their plan. Of points at one place of the plan one is used.
+/// Empty if all lie on a line of the plan. O(n log n), 150 bytes a point.
+[[nodiscard]] Mesh greedy_mesh(const std::vector<Eigen::Vector3d>& points, double tolerance);
+
+}  // namespace ray

@@ -1,0 +1,95 @@
+#include "greedy_mesh.h"
+#include "ground_heights.h"
+#include "ground_sites.h"
+
+#include <raycloud/core/error.h>
+#include <raycloud/mesh/terrain.h>
+#include <raycloud/spatial/point_sample.h>
+#include <raycloud/spatial/point_spacing.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ray {
+namespace {
+
+constexpr std::size_t kSample = 100'000;
+constexpr double kMostCells = 4194304.0;
+constexpr double kLeastCell = 0.1;     // m
+constexpr double kCellSpacings = 2.0;  // of points
+
+struct TerrainSurvey {
+  StreamCounts stream;
+  std::uint64_t bounded = 0;
+  PointSample sample{kSample};
+};
+
+void survey_terrain(const Context& context, RaySource& source, TerrainSurvey& survey) {
+  survey.stream = stream(
+      context, source, nullptr,
+      [&](RayCloud& rays) { return survey.sample.candidates(rays.ends, rays.bounded); },
+      [&](RayCloud& rays, const std::vector<Eigen::Vector3d>& candidates) {
+        survey.sample.add(candidates);
+        survey.bounded += static_cast<std::uint64_t>(
+            std::count_if(rays.bounded.begin(), rays.bounded.end(), [](auto b) { return b != 0; }));
+      });
+  survey.stream.rays_out = 0;
+}
+
+/// Where the sample is but for one in a thousand on each side, and half as much again: an end that strayed
+/// hundreds of kilometres must not make the cells that wide.
+PlanRaster raster_over(const TerrainSurvey& survey) {
+  const auto& sample = survey.sample.points();
+  PlanRaster raster;
+  Eigen::Vector2d size;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<double> sorted;
+    for (const Eigen::Vector3d& point : sample)
+      sorted.push_back(point[axis]);
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t cut = sorted.size() / 1000;
+    const double low = sorted[cut];
+    const double high = sorted[sorted.size() - 1 - cut];
+    const double margin = 0.5 * (high - low);
+    raster.low[axis] = std::max(sorted.front(), low - margin);
+    size[axis] = std::min(sorted.back(), high + margin) - raster.low[axis];
+  }
+  const double spacing = estimate_spacing(sample, survey.bounded).value;
+  raster.width = std::max({kCellSpacings * spacing, kLeastCell, std::sqrt(size.x() * size.y() / kMostCells),
+                           size.maxCoeff() / kMostCells * 2.0});
+  raster.low.array() -= 0.5 * raster.width;
+  raster.columns = static_cast<std::int64_t>(size.x() / raster.width) + 2;
+  raster.rows = static_cast<std::int64_t>(size.y() / raster.width) + 2;
+  return raster;
+}
+
+}  // namespace
+
+Terrain extract_terrain(const Context& context, RaySource& source, const TerrainOptions& options) {
+  if (!(options.gradient > 0.0 && std::isfinite(options.gradient)))
+    throw Error(ErrorCode::usage, "the gradient must be above 0");
+  if (!(options.tolerance >= 0.0 && std::isfinite(options.tolerance)))
+    throw Error(ErrorCode::usage, "the tolerance must be 0 or more");
+  TerrainSurvey survey;
+  survey_terrain(context, source, survey);
+  if (survey.bounded == 0) throw Error(ErrorCode::no_data, "has no bounded rays, so there is no ground");
+  const PlanRaster raster = raster_over(survey);
+  source.rewind();
+  std::vector<GroundSite> sites = ground_sites(context, source, raster, options.gradient);
+  remove_raised(sites, raster, options.gradient);
+  remove_above_cones(sites, options.gradient);
+  source.rewind();
+  const std::vector<Eigen::Vector3d> ground = ground_heights(context, source, sites, raster);
+  check_cancelled(context);
+  Terrain terrain{.mesh = greedy_mesh(ground, options.tolerance),
+                  .stream = survey.stream,
+                  .bounded = survey.bounded,
+                  .cell = raster.width,
+                  .heights = ground.size()};
+  if (terrain.mesh.empty())
+    throw Error(ErrorCode::no_data,
+                "no ground is found: there are too few ends, or all on one line of the map");
+  return terrain;
+}
+
+}  // namespace ray

@@ -1,0 +1,29 @@
+#include "wrap_forms.h"
+
+#include <raycloud/core/error.h>
+
+#include <cmath>
+
+namespace ray {
+
+Wrap wrap(const Context& context, RaySource& source, WrapDirection direction, double curvature) {
+  if (!std::isfinite(curvature) || curvature < 0.0)
+    throw Error(ErrorCode::usage, "the curvature must be 0 or more");
+  const EndsSurvey survey = survey_ends(context, source);
+  if (survey.bounded == 0)
+    throw Error(ErrorCode::no_data, "has no bounded rays, so there is nothing to wrap");
+  source.rewind();
+  switch (direction) {
+    case WrapDirection::upwards:
+      return wrap_from_below(context, source, survey, curvature, 1.0);
+    case WrapDirection::downwards:
+      return wrap_from_below(context, source, survey, curvature, -1.0);
+    case WrapDirection::inwards:
+      return wrap_around(context, source, survey, curvature, 1.0);
+    case WrapDirection::outwards:
+      break;
+  }
+  return wrap_around(context, source, survey, curvature, -1.0);
+}
+
+}  // namespace ray
