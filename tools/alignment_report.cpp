@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 namespace ray::tools {
 namespace {
@@ -41,12 +40,17 @@ std::string as_text(const Pose& pose) {
 }
 
 std::string as_text(const AxesAlignment& alignment) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   return formatted("walls            %.0f m2 along the axes, %.0f %% of what is upright\n",
                    alignment.wall_area, 100.0 * alignment.wall_share) +
          formatted("ground           %.0f m2\n", alignment.ground_area) +
-         formatted("residual         %.4f m RMSE of the walls, yaw to %.4f degrees\n",
-                   alignment.wall_residual, kDegrees * alignment.yaw_sigma);
+         formatted("residual         %.4f m RMSE of the walls\n", alignment.wall_residual);
+}
+
+std::string as_text(const CloudAlignment& alignment) {
+  return formatted("overlap          %.1f %% of the cloud, %.1f %% of the reference\n",
+                   100.0 * alignment.overlap, 100.0 * alignment.reference_overlap) +
+         formatted("agreement        %.1f %% of what both have seen\n", 100.0 * alignment.agreement) +
+         formatted("residual         %.4f m RMSE of %.0f patches\n", alignment.rmse, alignment.patches);
 }
 
 }  // namespace ray::tools

@@ -2,6 +2,7 @@
 /// What rayalign prints and writes of a transform.
 
 #include <raycloud/align/axes.h>
+#include <raycloud/align/clouds.h>
 #include <raycloud/core/pose.h>
 
 #include <string>
@@ -13,5 +14,8 @@ namespace ray::tools {
 
 /// What is known of the axes.
 [[nodiscard]] std::string as_text(const AxesAlignment& alignment);
+
+/// How well the cloud lies on the reference.
+[[nodiscard]] std::string as_text(const CloudAlignment& alignment);
 
 }  // namespace ray::tools

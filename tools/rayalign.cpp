@@ -3,6 +3,8 @@
 #include "cloud_to_cloud.h"
 
 #include <raycloud/align/axes.h>
+#include <raycloud/align/clouds.h>
+#include <raycloud/core/error.h>
 #include <raycloud/filter/transform.h>
 #include <raycloud/io/ray_cloud_file.h>
 #include <raycloud/io/transform_file.h>
@@ -26,7 +28,11 @@ says why, writes nothing and exits with 1.)",
     .usages = {{.name = "axes",
                 .words = {cloud()},
                 .help = "walls to the axes, their corner to the origin, ground to height zero",
-                .example = "rayalign building.ply"}},
+                .example = "rayalign building.ply"},
+               {.name = "reference",
+                .words = {cloud(), cloud("REFERENCE")},
+                .help = "onto another cloud, wherever it lies",
+                .example = "rayalign tuesday.ply monday.ply"}},
     .options = {output_option("CLOUD_aligned.ply"),
                 view_option(),
                 {.name = "output_transform",
@@ -35,6 +41,7 @@ says why, writes nothing and exits with 1.)",
                 {.name = "apply",
                  .value = input("FILE", {".yaml"}),
                  .help = "apply this transform instead of finding one"},
+                {.name = "local", .help = "look only near where the clouds are", .usages = {"reference"}},
                 {.name = "level",
                  .help = "take out roll and pitch too, up to 15 degrees",
                  .usages = {"axes"}}},
@@ -55,11 +62,26 @@ Found axes_of(const Match& match, const Session& session) {
   return {alignment.pose, ray::tools::as_text(alignment), {}};
 }
 
+Found reference_of(const Match& match, const Session& session) {
+  const auto source = ray::open_ray_cloud(match.text("CLOUD"));
+  const auto reference = ray::open_ray_cloud(match.text("REFERENCE"));
+  const ray::CloudAlignment alignment =
+      align_clouds(session.context(), *source, *reference, {.local = match.has("--local")});
+  if (!alignment.doubt.empty())
+    throw ray::Error(ray::ErrorCode::no_data,
+                     match.text("CLOUD") + ": not aligned, since " + alignment.doubt);
+  return {alignment.pose, ray::tools::as_text(alignment), {}};
+}
+
+Found found_by(const Match& match, const Session& session) {
+  if (match.has("--apply")) return {ray::read_transform(match.text("--apply")), {}, {}};
+  return match.usage() == "axes" ? axes_of(match, session) : reference_of(match, session);
+}
+
 void run(const Match& match, Session& session) {
   if (match.has("--apply") && match.has("--level"))
     match.reject("--level", "with --apply nothing is looked for");
-  const Found found = match.has("--apply") ? Found{ray::read_transform(match.text("--apply")), {}, {}}
-                                           : axes_of(match, session);
+  const Found found = found_by(match, session);
   if (match.has("--output_transform"))
     write_transform(match.text("--output_transform"), found.pose, found.notes);
   session.print(ray::tools::as_text(found.pose) + found.report);

@@ -24,10 +24,10 @@ struct OuterWall {
   double area = 0.0;
 };
 
-/// Of the lines normal to an axis, those at its low and high end that have a third of the area of the
-/// strongest. Both sides of a wall count together.
+/// Of the lines normal to an axis, those at its low and high end that have a sixth of the area of the
+/// strongest: what is outside is often seen less than corridors are.
 std::array<OuterWall, 2> outer_walls(const std::vector<WallLine>& lines) {
-  constexpr double kShare = 1.0 / 3.0;
+  constexpr double kShare = 1.0 / 6.0;
   double most = 0.0;
   for (const WallLine& line : lines)
     most = std::max(most, line.area);
