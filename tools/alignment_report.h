@@ -4,18 +4,23 @@
 #include <raycloud/align/axes.h>
 #include <raycloud/align/clouds.h>
 #include <raycloud/core/pose.h>
+#include <raycloud/io/transform_file.h>
 
 #include <string>
 
 namespace ray::tools {
 
-/// The matrix, the rotation vector and the translation, in seven lines.
-[[nodiscard]] std::string as_text(const Pose& pose);
+/// A transform, and what is known of it: lines to print, and lines for its file.
+struct Found {
+  Pose pose;
+  std::string report;
+  TransformNotes notes;
+};
 
-/// What is known of the axes.
-[[nodiscard]] std::string as_text(const AxesAlignment& alignment);
+[[nodiscard]] Found found(const AxesAlignment& alignment);
+[[nodiscard]] Found found(const CloudAlignment& alignment);
 
-/// How well the cloud lies on the reference.
-[[nodiscard]] std::string as_text(const CloudAlignment& alignment);
+/// The matrix, the rotation vector, the translation and the report.
+[[nodiscard]] std::string as_text(const Found& found);
 
 }  // namespace ray::tools

@@ -7,7 +7,9 @@
 
 #include <raycloud/core/pose.h>
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace ray::align {
 
@@ -19,11 +21,14 @@ struct Agreement {
     double other = 0.0;    ///< beside a surface, but not on it or not heading as it does
     double empty = 0.0;    ///< in space that was seen to be empty
     double unknown = 0.0;  ///< where the other cloud tells nothing
-    double squares = 0.0;  ///< m², of the distances of those that are the same
     [[nodiscard]] double known() const { return same + other + empty; }
     Counts& operator+=(const Counts& more);
   };
   Counts upright, others;
+  /// What speaks against the pose: patches in empty space, and clean upright ones beside a surface, but
+  /// without those in the tenth of space where most of them are. There something may have changed; what is
+  /// wrong with a pose is wrong everywhere.
+  double against = 0.0;
 
   [[nodiscard]] Counts all() const {
     Counts sum = upright;
@@ -37,8 +42,15 @@ struct Observed {
   const FreeCubes& free;
 };
 
+/// A patch, and whether it is clean (PatchLevel::is_clean).
+struct JudgedPatch {
+  Patch patch;
+  bool is_clean;
+};
+[[nodiscard]] std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t most);
+
 /// `tolerance` (m): how far from a surface is on it.
-[[nodiscard]] Agreement agreement_of(std::span<const Patch> patches, const Pose& pose, const Observed& other,
-                                     double tolerance);
+[[nodiscard]] Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose,
+                                     const Observed& other, double tolerance);
 
 }  // namespace ray::align

@@ -89,8 +89,7 @@ AxesAlignment align_to_axes(const Context& context, RaySource& source, const Axe
   AxesAlignment alignment;
   const Survey survey = survey_ends(context, source);
   alignment.dropped = survey.dropped;
-  if (survey.bounded == 0)
-    throw Error(ErrorCode::no_data, "there are no surfaces to align to: no ray is bounded");
+  if (survey.bounded == 0) throw Error(ErrorCode::no_data, "no ray is bounded, so there is nothing to align");
   if (!(survey.spacing > 0.0)) throw Error(ErrorCode::no_data, "there are too few points to align to");
   const Surfaces surfaces = gather_surfaces(context, source, survey, patch_width(survey));
   const PatchLevel fine(context, surfaces, 2, kLeastPoints), coarse(context, surfaces, 4, kLeastPoints);
@@ -100,14 +99,14 @@ AxesAlignment align_to_axes(const Context& context, RaySource& source, const Axe
   if (rule.level) {
     const auto found = levelling(floors);
     if (!found)
-      throw Error(ErrorCode::no_data, "there is no ground to level: no level surface is seen from above");
+      throw Error(ErrorCode::no_data, "no level surface is seen from above, so there is no ground to level");
     level = *found;
     for (Floor& floor : floors)
       floor.place = level * floor.place, floor.normal = level * floor.normal;
     std::erase_if(floors, [](const Floor& floor) { return floor.normal.z() < std::cos(kMostSlope); });
   }
   const auto ground = ground_of(floors);
-  if (!ground) throw Error(ErrorCode::no_data, "there is no ground: no level surface is seen from above");
+  if (!ground) throw Error(ErrorCode::no_data, "no level surface is seen from above, so there is no ground");
   alignment.ground_area = ground->area;
 
   std::vector<Upright> uprights;

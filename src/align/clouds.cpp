@@ -20,7 +20,7 @@ Known known_of(const Context& context, RaySource& source, const Survey& survey, 
 
 void require_surfaces(const Survey& survey, const char* which) {
   if (survey.bounded == 0)
-    throw Error(ErrorCode::no_data, std::string(which) + " has no surfaces to align: no ray is bounded");
+    throw Error(ErrorCode::no_data, std::string(which) + " has no bounded ray, so there is nothing to align");
   if (!(survey.spacing > 0.0))
     throw Error(ErrorCode::no_data, std::string(which) + " has too few points to align");
 }
@@ -49,45 +49,73 @@ Matrix6 covariance_of(const FineFit& fit) {
          solver.eigenvectors().transpose();
 }
 
-/// Why the best of some hypotheses is not to be trusted; empty if it is. `rivals` are those that came to lie
-/// elsewhere.
-std::string doubt_of(const Hypothesis& best, const std::vector<Hypothesis>& rivals, double overlap) {
-  constexpr double kLeastSame = 100.0, kLeastOverlap = 0.1, kMostEmpty = 0.035, kMostRival = 0.7;
-  Agreement::Counts both = best.there.all();
-  both += best.back.all();
-  const std::string found = "the best overlap found is " + percent(overlap);
-  if (both.same < kLeastSame || overlap < kLeastOverlap) return "too few surfaces are in both: " + found;
-  const double empty = share(both.empty, both.same + both.empty);
-  if (empty > kMostEmpty)
-    return percent(empty) + " of the surfaces would be where the other cloud has seen empty space: " + found;
-  for (const Hypothesis& rival : rivals)
-    if (rival.score > kMostRival * best.score) return "it fits nearly as well elsewhere: " + found;
-  return {};
+/// With all patches; narrow ones too, where these are wide enough for noise not to make them round.
+FineFit last_fit(const Context& context, const Known& cloud, const Known& reference, const Pose& start) {
+  constexpr double kWideEnough = 0.25;  // m
+  constexpr double kShare = 0.5;        // of the patches, for the narrow ones to count
+  constexpr double kGate = 0.25;        // widths
+  const FineFit fit =
+      fit_patches(context, cloud.fine.patches(), reference.fine, start, {kGate * reference.fine.width(), 20});
+  if (reference.narrow.width() < kWideEnough) return fit;
+  const FineFit narrow = fit_patches(context, cloud.narrow.patches(), reference.narrow, fit.pose,
+                                     {kGate * reference.narrow.width(), 20});
+  return narrow.count < kShare * fit.count ? fit : narrow;
 }
 
-void dump(const std::vector<Hypothesis>& hypotheses) {
-  if (getenv("ALIGN_DEBUG") == nullptr) return;
-  for (std::size_t i = 0; i < std::min<std::size_t>(hypotheses.size(), 4); ++i) {
-    const Hypothesis& h = hypotheses[i];
-    const auto& a = h.there.upright;
-    const auto& b = h.back.upright;
-    const auto& c = h.there.others;
-    const auto& d = h.back.others;
-    fprintf(
-        stderr,
-        "  #%zu score %.0f up there s%.0f o%.0f e%.0f u%.0f back s%.0f o%.0f e%.0f u%.0f | oth there s%.0f o%.0f e%.0f u%.0f back s%.0f o%.0f e%.0f u%.0f yaw %.2f t %.2f %.2f %.2f\n",
-        i, h.score, a.same, a.other, a.empty, a.unknown, b.same, b.other, b.empty, b.unknown, c.same, c.other,
-        c.empty, c.unknown, d.same, d.other, d.empty, d.unknown,
-        std::atan2(h.pose.rotation(1, 0), h.pose.rotation(0, 0)) * 57.29578, h.pose.translation.x(),
-        h.pose.translation.y(), h.pose.translation.z());
-  }
+/// Hypotheses, the best first, and after them those that were looked for beside the best.
+struct Judged {
+  std::vector<Hypothesis> all;
+  std::vector<Hypothesis> aside;
+};
+
+Judged judge(const Context& context, const Known& cloud, const Known& reference, bool local) {
+  constexpr std::size_t kKept = 24;
+  Judged judged;
+  if (!local) judged.all = rough_hypotheses(context, cloud, reference);
+  judged.all.resize(std::min(judged.all.size(), kKept));
+  const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
+  judged.all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
+  judged.all = fitted(context, cloud, reference, std::move(judged.all));
+  judged.aside =
+      fitted(context, cloud, reference, aside_of(context, judged.all.front().pose, cloud, reference));
+  if (judged.aside.front().score > judged.all.front().score)
+    judged.all.insert(judged.all.begin(), judged.aside.front());
+  return judged;
+}
+
+/// Why the best is not to be trusted; empty if it is. Of the others, those that came to lie elsewhere are
+/// rivals, and those that began beside it and came to about the same place should have come to just that.
+std::string doubt_of(const Judged& judged, const Known& cloud, double overlap) {
+  constexpr double kLeastSame = 100.0, kLeastOverlap = 0.1, kMostAgainst = 0.02, kMostRival = 0.7;
+  constexpr double kLoose = 0.25;  // widths
+  const Hypothesis& best = judged.all.front();
+  Agreement both = best.there;
+  both += best.back;
+  const double same = both.all().same, against = share(both.against, same + both.against);
+  const std::string found = "the best overlap found is " + percent(overlap);
+  if (same < kLeastSame || overlap < kLeastOverlap || !(best.score > 0.0))
+    return "too few surfaces are in both: " + found;
+  if (against > kMostAgainst)
+    return percent(against) +
+           " of the surfaces would be where the other cloud has seen that there are none: " + found;
+  const double rival = kMostRival * best.score;
+  const auto is_elsewhere = [&](const Hypothesis& other) {
+    return other.score > rival && !is_same_place(other.pose, best.pose, cloud);
+  };
+  const auto is_loose = [&](const Hypothesis& other) {
+    const double apart = (other.pose.translation - best.pose.translation).norm();
+    return other.score > rival && apart > kLoose * cloud.fine.width();
+  };
+  if (std::any_of(judged.all.begin(), judged.all.end(), is_elsewhere) ||
+      std::any_of(judged.aside.begin(), judged.aside.end(), is_loose))
+    return "it fits nearly as well elsewhere: " + found;
+  return {};
 }
 
 }  // namespace
 
 CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, RaySource& reference_source,
                             const AlignRule& rule) {
-  constexpr std::size_t kKept = 24;
   const Survey of_cloud = survey_ends(context, cloud_source),
                of_reference = survey_ends(context, reference_source);
   require_surfaces(of_cloud, "the cloud");
@@ -96,20 +124,9 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   const Known cloud = known_of(context, cloud_source, of_cloud, width),
               reference = known_of(context, reference_source, of_reference, width);
 
-  std::vector<Hypothesis> hypotheses;
-  if (!rule.local) hypotheses = rough_hypotheses(context, cloud, reference);
-  hypotheses.resize(std::min(hypotheses.size(), kKept));
-  hypotheses.push_back({{Eigen::Matrix3d::Identity(), of_cloud.origin - of_reference.origin}, {}, {}, 0.0});
-  hypotheses = fitted(context, cloud, reference, hypotheses);
-  const Hypothesis best = hypotheses.front();
-  std::vector<Hypothesis> rivals = fitted(context, cloud, reference, aside_of(best.pose, cloud, reference));
-  dump(hypotheses);
-  dump(rivals);
-  rivals.insert(rivals.end(), hypotheses.begin() + 1, hypotheses.end());
-  std::erase_if(rivals, [&](const Hypothesis& one) { return is_same_place(one.pose, best.pose, cloud); });
-
-  FineFit fit = fit_patches(context, cloud.fine.patches(), reference.fine, best.pose,
-                            {0.25 * reference.fine.width(), 20, false});
+  const Judged judged = judge(context, cloud, reference, rule.local);
+  const Hypothesis& best = judged.all.front();
+  const FineFit fit = last_fit(context, cloud, reference, best.pose);
   CloudAlignment alignment;
   alignment.pose = in_world(fit.pose, cloud, reference);
   alignment.rmse = fit.rmse;
@@ -120,7 +137,7 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  alignment.doubt = doubt_of(best, rivals, std::max(alignment.overlap, alignment.reference_overlap));
+  alignment.doubt = doubt_of(judged, cloud, std::max(alignment.overlap, alignment.reference_overlap));
   alignment.dropped = of_cloud.dropped + of_reference.dropped;
   return alignment;
 }

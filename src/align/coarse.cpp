@@ -2,6 +2,7 @@
 
 #include <raycloud/exec/parallel.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSide = 256;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr std::size_t kPeaks = 4;  // of one turn
+constexpr std::size_t kPeaks = 40;  // of one turn
 
 /// Takes out what is wide, which says nothing of where things are, and makes the energy 1.
 void filter(Image& spectrum, std::size_t side) {
@@ -38,29 +39,26 @@ struct Peak {
   float score;
 };
 
-/// The highest values of an image that are the highest within three cells.
+/// The highest values of an image that are the highest within two cells.
 std::vector<Peak> peaks_of(const Image& image, std::size_t side) {
-  constexpr int kApart = 3;
-  std::vector<Peak> peaks;
+  constexpr int kApart = 2;
   const auto mask = static_cast<int>(side) - 1;
-  float least = 0.0F;
+  const auto at = [&](int x, int y) {
+    return image[static_cast<std::size_t>(y & mask) * side + static_cast<std::size_t>(x & mask)].real();
+  };
+  std::vector<Peak> peaks;
   for (int y = 0; y <= mask; ++y)
     for (int x = 0; x <= mask; ++x) {
-      const float value = image[static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x)].real();
-      if (value <= least) continue;
-      const auto near = std::find_if(peaks.begin(), peaks.end(), [&](const Peak& peak) {
-        const auto apart = [mask](int a, int b) { return std::min((a - b) & mask, (b - a) & mask); };
-        return std::max(apart(peak.x, x), apart(peak.y, y)) <= kApart;
-      });
-      if (near != peaks.end()) {
-        if (near->score >= value) continue;
-        peaks.erase(near);
-      }
-      peaks.push_back({x, y, value});
-      std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.score > b.score; });
-      if (peaks.size() > kPeaks) peaks.pop_back();
-      if (peaks.size() == kPeaks) least = peaks.back().score;
+      const float value = at(x, y);
+      bool is_highest = value > 0.0F && value > at(x - 1, y) && value >= at(x + 1, y);
+      for (int j = -kApart; j <= kApart && is_highest; ++j)
+        for (int i = -kApart; i <= kApart && is_highest; ++i)
+          is_highest = at(x + i, y + j) <= value;
+      if (is_highest) peaks.push_back({x, y, value});
     }
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Peak& a, const Peak& b) { return a.score > b.score; });
+  if (peaks.size() > kPeaks) peaks.resize(kPeaks);
   return peaks;
 }
 
@@ -149,19 +147,19 @@ std::vector<Candidate> find_candidates(const Context& context, const Footprint& 
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   // Where the middle of the cloud comes to lie tells candidates apart, whatever the turn.
-  const auto place = [&](const Candidate& one) {
-    const double c = std::cos(one.yaw), s = std::sin(one.yaw);
-    return Eigen::Vector2d(c * cloud.centre.x() - s * cloud.centre.y() + one.shift.x(),
-                           s * cloud.centre.x() + c * cloud.centre.y() + one.shift.y());
-  };
   std::vector<Candidate> candidates;
+  std::vector<Eigen::Vector2d> places;
+  const double near = 2.0 * search.cell();
   for (const Candidate& one : all) {
     if (candidates.size() == most) break;
-    const bool is_new = std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-      return std::abs(std::remainder(one.yaw - other.yaw, kTurn)) < 2.5 * step &&
-             (place(one) - place(other)).norm() < 3.0 * search.cell();
-    });
-    if (is_new) candidates.push_back(one);
+    const Eigen::Vector2d place = Eigen::Rotation2Dd(one.yaw) * cloud.centre + one.shift;
+    bool is_new = true;
+    for (std::size_t i = 0; i < candidates.size() && is_new; ++i)
+      is_new = (place - places[i]).squaredNorm() >= near * near ||
+               std::abs(std::remainder(one.yaw - candidates[i].yaw, kTurn)) >= 1.5 * step;
+    if (!is_new) continue;
+    candidates.push_back(one);
+    places.push_back(place);
   }
   return candidates;
 }

@@ -31,7 +31,7 @@ struct Sums {
   std::array<std::uint32_t, 3> first{};
   std::array<std::uint32_t, 6> second{};  // xx xy xz yy yz zz
   std::array<std::int16_t, 3> to_sensor{};
-  Eigen::Vector3f sensor;
+  Eigen::Vector3f sensor, seen;  // of the first
 };
 
 /// Which of the six faces of a cube looks most towards the sensor.
@@ -104,6 +104,7 @@ Gathered gathered_of(const Sums& sums, double width) {
   gathered.key = sums.key;
   gathered.count = sums.count;
   gathered.sensor = sums.sensor;
+  gathered.seen = sums.seen;
   const double step = width / kOffsetSteps;
   Eigen::Vector3d mean;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -171,6 +172,7 @@ Surfaces gather_surfaces(const Context& context, RaySource& source, const Survey
             *added.value = static_cast<std::uint32_t>(all.size());
             all.emplace_back().key = sightings[i].key;
             all.back().sensor = (rays.starts[sightings[i].row] - survey.origin).cast<float>();
+            all.back().seen = (rays.ends[sightings[i].row] - survey.origin).cast<float>();
           }
           add(sightings[i], all[*added.value]);
         }

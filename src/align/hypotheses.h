@@ -15,7 +15,7 @@ struct Known {
   Known(const Context& context, Surfaces gathered);
 
   Surfaces surfaces;
-  PatchLevel narrow, fine, middle, wide;  ///< cubes once, twice … eight times as wide as the surfaces'
+  PatchLevel narrow, fine, middle, wide;  ///< cubes as wide as the surfaces', and two, four and eight times
   FreeCubes free;
 };
 
@@ -25,18 +25,19 @@ struct Hypothesis {
   double score = 0.0;
 };
 
-/// Poses from all candidates, roughly fitted, the best first.
+/// Poses from all candidates, roughly fitted, distinct, the best first.
 [[nodiscard]] std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud,
                                                        const Known& reference);
 
-/// The given ones fitted with all six degrees of freedom and judged from both sides, the best first; of those
-/// that come to the same, one.
+/// The given ones fitted with all six degrees of freedom and judged from both sides, the best first.
 [[nodiscard]] std::vector<Hypothesis> fitted(const Context& context, const Known& cloud,
-                                             const Known& reference, const std::vector<Hypothesis>& from);
+                                             const Known& reference, std::vector<Hypothesis> hypotheses);
 
-/// A step aside from a pose in eight directions and a little turn either way: poses that come back when they
-/// are fitted, if there is anything that holds the cloud where it is.
-[[nodiscard]] std::vector<Hypothesis> aside_of(const Pose& pose, const Known& cloud, const Known& reference);
+/// Poses beside a pose: a step aside in eight directions and a little turn either way, which come back when
+/// they are fitted if there is anything that holds the cloud where it is; and of all small shifts the six
+/// that agree best without being fitted.
+[[nodiscard]] std::vector<Hypothesis> aside_of(const Context& context, const Pose& pose, const Known& cloud,
+                                               const Known& reference);
 
 /// Whether two poses put a cloud to the same place, within the width of a patch.
 [[nodiscard]] bool is_same_place(const Pose& a, const Pose& b, const Known& cloud);

@@ -10,6 +10,19 @@ namespace {
 
 constexpr std::uint64_t kAxisMask = (1 << 20) - 1;
 
+/// A low quantile, since corners and what is rough are thicker than noise makes a surface.
+double noise_of(const std::vector<Patch>& patches) {
+  constexpr double kQuantile = 0.3;
+  std::vector<double> variances;
+  for (const Patch& patch : patches)
+    if (patch.is_flat() && patch.count >= 10.0) variances.push_back(patch.variances[0]);
+  if (variances.empty()) return 0.0;
+  const auto at =
+      variances.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(variances.size() - 1));
+  std::nth_element(variances.begin(), at, variances.end());
+  return *at;
+}
+
 /// The key of the wider cube in which a cube lies: coordinates count from -2^19, so that cubes of all widths
 /// have a corner at the origin.
 std::uint64_t wider(std::uint64_t key, int shift) {
@@ -47,7 +60,6 @@ Patch patch_of(const Gathered& gathered) {
   patch.along = eigen.vectors.col(2);
   patch.variances = eigen.values.cwiseMax(0.0);
   patch.count = gathered.count;
-  patch.sensor = gathered.sensor;
   return patch;
 }
 
@@ -129,6 +141,7 @@ PatchLevel::PatchLevel(const Context& context, const Surfaces& surfaces, int fac
     for (std::size_t i = begin; i < end; ++i)
       patches_[i] = patch_of(*chosen[i]);
   });
+  noise_ = noise_of(patches_);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     Range& range = *index_.add(voxel_place(cube_of(chosen[i]->key)).key).value;
     if (range.count == 0) range.first = static_cast<std::uint32_t>(i);

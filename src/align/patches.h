@@ -21,6 +21,7 @@ struct Gathered {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();  ///< m², sum over the points, about the mean
   Eigen::Vector3d to_sensor = Eigen::Vector3d::Zero();
   Eigen::Vector3f sensor = Eigen::Vector3f::Zero();  ///< m, from the origin: that of the first ray
+  Eigen::Vector3f seen = Eigen::Vector3f::Zero();    ///< m, from the origin: where that ray ended
 };
 
 struct Segment {
@@ -46,8 +47,6 @@ struct Patch {
   Eigen::Vector3d along;      ///< of unit length, the direction of greatest extent
   Eigen::Vector3d variances;  ///< m², ascending
   double count = 0.0;         ///< of points
-  Eigen::Vector3f sensor;     ///< m, from the origin: one from which it was seen
-
   /// m², of a flat one: points that fill a rectangle have the product of the standard deviations of its
   /// sides, each a √12th of the side.
   [[nodiscard]] double area() const { return 12.0 * std::sqrt(variances[1] * variances[2]); }
@@ -66,6 +65,11 @@ class PatchLevel {
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] const std::vector<Patch>& patches() const { return patches_; }
+  /// A flat patch of many points that is no thicker than noise makes it: no corner, no foliage.
+  [[nodiscard]] bool is_clean(const Patch& patch) const {
+    constexpr double kLeastPoints = 10.0, kThick = 2.5;
+    return patch.count >= kLeastPoints && patch.is_flat() && patch.variances[0] < kThick * noise_;
+  }
 
   /// Calls `visit(patch)` for all in the eight cubes nearest to a point, so at least for those within half a
   /// width.
@@ -90,6 +94,7 @@ class PatchLevel {
     std::uint32_t count = 0;
   };
   double width_;
+  double noise_ = 0.0;  // m², the usual variance of a flat surface across itself
   std::vector<Patch> patches_;
   KeyTable<Range> index_;
 };

@@ -29,7 +29,7 @@ std::string_view matrix_part(std::string_view text) {
   while (!text.empty()) {
     std::string_view rest = text;
     const std::string_view line = text::trimmed(text::take_line(text));
-    if (text::is_blank(line)) continue;
+    if (text::is_blank(line) || text::is_comment(line)) continue;
     constexpr std::string_view kName = "matrix:";
     if (line.starts_with(kName)) return rest.substr(rest.find(kName) + kName.size());
     if (line.find(':') == std::string_view::npos) return rest;

@@ -19,34 +19,23 @@ AxesAlignment aligned(const RayCloud& rays, const AxesRule& rule = {}, const Con
   return align_to_axes(context, source, rule);
 }
 
-/// How far two transforms put the points of a cloud apart, at most.
-double furthest(const RayCloud& rays, const Pose& a, const Pose& b) {
+/// How far a transform moves the points of a cloud, at most.
+double furthest(const RayCloud& rays, const Pose& pose) {
   double most = 0.0;
   for (std::size_t i = 0; i < rays.size(); i += 97)
-    if (rays.bounded[i] != 0) most = std::max(most, (a * rays.ends[i] - b * rays.ends[i]).norm());
+    if (rays.bounded[i] != 0) most = std::max(most, (pose * rays.ends[i] - rays.ends[i]).norm());
   return most;
 }
 
 TEST(Axes, WallsAreAlongTheAxesAndTheirCornerIsTheOrigin) {
-  const RayCloud rays = room_scan(1, 200'000);
-  const AxesAlignment alignment = aligned(rays);
-  // The world is built along the axes.
-  const double yaw = std::atan2(alignment.pose.rotation(1, 0), alignment.pose.rotation(0, 0));
-  EXPECT_LT(std::abs(std::remainder(yaw, std::numbers::pi / 2.0)), 0.05 * kDegree);
-  // Its floor is at 0, and no more than a hundredth of what is bounded is outside the walls, far away.
-  std::size_t inside = 0, bounded = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.bounded[i] == 0) continue;
-    ++bounded;
-    const Eigen::Vector3d end = alignment.pose * rays.ends[i];
-    inside += end.x() > -0.1 && end.y() > -0.1 && end.z() > -0.1 ? 1 : 0;
-  }
-  EXPECT_GT(inside, bounded * 7 / 10);
+  const RayCloud rays = plain_room(1);
+  const Pose found = aligned(rays).pose;
+  EXPECT_LT(angle_of(found.rotation), 0.05 * kDegree);
+  EXPECT_LT(found.translation.norm(), 0.01);
 }
 
 RC_GTEST_PROP(Axes, DoNotDependOnWhereTheCloudWas, ()) {
-  static const RayCloud rays = room_scan(1);
-  static const Pose expected = aligned(rays).pose;
+  static const RayCloud rays = plain_room(1);
   const double yaw = *rc::gen::inRange(-180, 180);
   const Eigen::Vector3d shift(*rc::gen::inRange(-1000, 1000), *rc::gen::inRange(-5'000'000, 5'000'000),
                               *rc::gen::inRange(-99, 99));
@@ -54,8 +43,9 @@ RC_GTEST_PROP(Axes, DoNotDependOnWhereTheCloudWas, ()) {
   RayCloud elsewhere = rays;
   elsewhere.transform(moved);
   const Pose found = after(aligned(elsewhere).pose, moved);
-  RC_ASSERT(angle_of(found.rotation.transpose() * expected.rotation) < 0.1 * kDegree);
-  RC_ASSERT(furthest(rays, found, expected) < 0.03);
+  // Walls of 5 and 8 m that cut cubes at a small angle; those of a building are longer.
+  RC_ASSERT(angle_of(found.rotation) < 0.1 * kDegree);
+  RC_ASSERT(furthest(rays, found) < 0.02);
 }
 
 TEST(Axes, AreTheSameBitsForAnyThreadsAndChunks) {
@@ -70,15 +60,14 @@ TEST(Axes, AreTheSameBitsForAnyThreadsAndChunks) {
 }
 
 TEST(Axes, AreLevelled) {
-  const RayCloud rays = room_scan(1);
-  const Pose expected = aligned(rays).pose;
+  const RayCloud rays = plain_room(1);
   Pose moved = moved_by(30.0, {5, 6, 7});
   moved.rotation = rotation_pose({5.0 * kDegree, -6.0 * kDegree, 0.0}).rotation * moved.rotation;
   RayCloud tilted = rays;
   tilted.transform(moved);
   const Pose found = after(aligned(tilted, {.level = true}).pose, moved);
-  EXPECT_LT(angle_of(found.rotation.transpose() * expected.rotation), 0.2 * kDegree);
-  EXPECT_LT(furthest(rays, found, expected), 0.05);
+  EXPECT_LT(angle_of(found.rotation), 0.1 * kDegree);
+  EXPECT_LT(furthest(rays, found), 0.02);
 }
 
 TEST(Axes, AreRefusedWithoutWalls) {
