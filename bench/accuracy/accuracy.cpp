@@ -1,31 +1,53 @@
-// How true normals, smoothing and denoising are, on scenes whose truth is known.
-//   bench_accuracy [normals|smoothing|denoising|transients|merging|terrain]
+// How true results are, on scenes whose truth is known.
+//   bench_accuracy [normals|smoothing|denoising|transients|merging|alignment|terrain]
 // Prints Markdown tables; the same numbers on every run, whatever the threads.
 
 #include "tables.h"
 
+#include <array>
 #include <cstdio>
 #include <string>
 
+namespace {
+
+struct Topic {
+  const char* name;
+  void (*print)();
+};
+
+void print_all_denoising() {
+  bench::print_denoising();
+  bench::print_calibration();
+  bench::print_far_from_others();
+}
+
+void print_all_transients() {
+  bench::print_opacity();
+  bench::print_transients();
+}
+
+constexpr std::array kTopics{Topic{"normals", bench::print_normals},
+                             Topic{"smoothing", bench::print_smoothing},
+                             Topic{"denoising", print_all_denoising},
+                             Topic{"transients", print_all_transients},
+                             Topic{"merging", bench::print_merging},
+                             Topic{"alignment", bench::print_alignment},
+                             Topic{"terrain", bench::print_terrain}};
+
+}  // namespace
+
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
-  if (argc > 2 || (argc == 2 && only != "normals" && only != "smoothing" && only != "denoising" &&
-                   only != "transients" && only != "merging" && only != "terrain")) {
-    std::fprintf(stderr, "usage: bench_accuracy [normals|smoothing|denoising|transients|merging|terrain]\n");
-    return 2;
+  bool is_known = only.empty();
+  for (const Topic& topic : kTopics) {
+    if (!only.empty() && only != topic.name) continue;
+    is_known = true;
+    topic.print();
   }
-  if (only.empty() || only == "normals") bench::print_normals();
-  if (only.empty() || only == "smoothing") bench::print_smoothing();
-  if (only.empty() || only == "denoising") {
-    bench::print_denoising();
-    bench::print_calibration();
-    bench::print_far_from_others();
-  }
-  if (only.empty() || only == "transients") {
-    bench::print_opacity();
-    bench::print_transients();
-  }
-  if (only.empty() || only == "merging") bench::print_merging();
-  if (only.empty() || only == "terrain") bench::print_terrain();
-  return 0;
+  if (is_known) return 0;
+  std::fprintf(stderr, "usage: bench_accuracy [");
+  for (const Topic& topic : kTopics)
+    std::fprintf(stderr, "%s%s", &topic == kTopics.data() ? "" : "|", topic.name);
+  std::fprintf(stderr, "]\n");
+  return 2;
 }

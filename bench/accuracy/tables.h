@@ -14,6 +14,7 @@ void print_far_from_others();
 void print_transients();
 void print_opacity();
 void print_merging();
+void print_alignment();
 void print_terrain();
 
 /// The last cells of a row.

@@ -128,6 +128,10 @@ raycombine min $1 $1 10 rays
 raycombine newest $1 $1 10 rays --paper
 raydiff $1 $1
 raydiff $1 $1 --json --individual
+rayalign $1
+rayalign $1 --level
+rayalign $1 $1
+rayalign $1 $1 --local
 raycolour $1 time
 raycolour $1 alpha 0.5
 raycolour $1 normal --lit

@@ -40,7 +40,7 @@ std::vector<Option> all_options(const Command& command) {
 
 bool shapes_result(const Option& option) {
   static const std::set<std::string> kRunOnly{"output", "view",    "quiet", "threads",
-                                              "memory", "version", "help"};
+                                              "memory", "version", "help",  "output_transform"};
   return !kRunOnly.contains(option.name);
 }
 

@@ -19,6 +19,7 @@ inline constexpr std::array kCommands{
     ListedCommand{"rayinfo", "what is in a ray cloud"},
     ListedCommand{"raytranslate", "move a ray cloud, in place"},
     ListedCommand{"rayrotate", "rotate a ray cloud about the origin, in place"},
+    ListedCommand{"rayalign", "align a ray cloud to its own axes, or onto another"},
     ListedCommand{"raydecimate", "thin a ray cloud"},
     ListedCommand{"rayrestore", "apply the edits of a thinned ray cloud to the full one"},
     ListedCommand{"raydenoise", "take noise out of a ray cloud"},

@@ -1,0 +1,268 @@
+// Pairs of scans of one world, cut so that they share a part: how many are aligned, how truly, and how many
+// wrongly.
+
+#include "street_scene.h"
+#include "tables.h"
+
+#include <raycloud/align/axes.h>
+#include <raycloud/align/clouds.h>
+#include <raycloud/core/memory_stream.h>
+#include <raycloud/exec/random.h>
+#include <raycloud/exec/stream.h>
+#include <raycloud/synth/movers.h>
+#include <raycloud/synth/scenes.h>
+#include <raycloud/synth/simulate.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace bench {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct World {
+  std::string name;
+  ray::Scene first, second;  ///< the same but for what moves
+  std::uint64_t rays;
+};
+
+/// The part of a cloud where dot(direction, p) is below a limit: as raysplit cuts it, so that nothing is
+/// known of the rest.
+ray::RayCloud part_of(ray::RayCloud rays, const Eigen::Vector3d& direction, double limit) {
+  std::vector<std::uint8_t> mask(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double at_start = direction.dot(rays.starts[i]) - limit,
+                 at_end = direction.dot(rays.ends[i]) - limit;
+    mask[i] = at_start < 0.0 || at_end < 0.0 ? 1 : 0;
+    if ((at_start >= 0.0) == (at_end >= 0.0)) continue;
+    const Eigen::Vector3d crossing =
+        rays.starts[i] + (rays.ends[i] - rays.starts[i]) * (at_start / (at_start - at_end));
+    if (at_end >= 0.0) rays.bounded[i] = 0;
+    (at_end >= 0.0 ? rays.ends[i] : rays.starts[i]) = crossing;
+  }
+  rays.select(mask);
+  return rays;
+}
+
+/// Below which a share of the bounded ends lies.
+double limit_of(const ray::RayCloud& rays, const Eigen::Vector3d& direction, double share) {
+  std::vector<double> places;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays.bounded[i] != 0) places.push_back(direction.dot(rays.ends[i]));
+  const auto at =
+      places.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(places.size() - 1));
+  std::nth_element(places.begin(), at, places.end());
+  return share >= 1.0 ? *at + 1000.0 : *at;
+}
+
+struct CloudPair {
+  ray::RayCloud cloud, reference;
+  ray::Pose truth;
+};
+
+struct Scans {
+  ray::RayCloud first, second;
+};
+
+/// Two parts of which each has in common with the other a share of its points, one of them moved.
+CloudPair cut_pair(const Scans& scans, double overlap, const ray::RandomStream& random,
+                   std::uint64_t number) {
+  const auto uniform = [&](std::uint64_t draw, double low, double high) {
+    return low + (high - low) * random.uniform(number, draw);
+  };
+  const double heading = uniform(0, 0.0, 2.0 * std::numbers::pi);
+  const Eigen::Vector3d direction(std::cos(heading), std::sin(heading), 0.0);
+  const double share = 1.0 / (2.0 - overlap);
+  CloudPair pair;
+  pair.cloud = part_of(scans.first, direction, limit_of(scans.first, direction, share));
+  pair.reference = part_of(scans.second, -direction, limit_of(scans.second, -direction, share));
+  const ray::Pose moved{
+      Eigen::AngleAxisd(uniform(1, 0.0, 2.0 * std::numbers::pi), Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+      {uniform(2, -100.0, 100.0), uniform(3, -100.0, 100.0), uniform(4, -10.0, 10.0)}};
+  pair.cloud.transform(moved);
+  pair.truth = {moved.rotation.transpose(), -(moved.rotation.transpose() * moved.translation)};
+  return pair;
+}
+
+struct PoseError {
+  double turn = 0.0;   ///< rad
+  double shift = 0.0;  ///< m, of the middle of the cloud
+};
+
+PoseError error_of(const ray::Pose& pose, const CloudPair& pair) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (std::size_t i = 0; i < pair.cloud.size(); ++i)
+    if (pair.cloud.bounded[i] != 0) middle += pair.cloud.ends[i], count += 1.0;
+  middle /= count;
+  return {Eigen::AngleAxisd(Eigen::Matrix3d(pose.rotation.transpose() * pair.truth.rotation)).angle(),
+          (pose * middle - pair.truth * middle).norm()};
+}
+
+ray::Scene reversed(ray::Scene scene) {
+  std::reverse(scene.path.positions.begin(), scene.path.positions.end());
+  return scene;
+}
+
+Scans scans_of(const World& world, std::uint64_t seed) {
+  const auto scan = [&](const ray::Scene& scene, std::uint64_t noise) {
+    ray::SimulationOptions options{.rays = world.rays, .seed = noise};
+    return read_all({}, *simulate(scene, options));
+  };
+  return {scan(world.first, 2 * seed), scan(world.second, 2 * seed + 1)};
+}
+
+struct Tally {
+  int pairs = 0, fine = 0, coarse = 0, wrong = 0, refused = 0, refused_right = 0;
+  std::vector<double> turns, shifts;
+  double seconds = 0.0;
+};
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void tell(const ray::CloudAlignment& found, const PoseError& error, const char* outcome) {
+  if (std::getenv("RAYCLOUD_BENCH_PAIRS") == nullptr) return;
+  std::fprintf(stderr, "%s turn %.3f deg, shift %.3f m, overlap %.2f %.2f, agreement %.2f, rmse %.4f: %s\n",
+               outcome, error.turn / kDegree, error.shift, found.overlap, found.reference_overlap,
+               found.agreement, found.rmse, found.doubt.c_str());
+}
+
+void judge(const CloudPair& pair, Tally& tally) {
+  constexpr double kCoarseTurn = 0.5 * kDegree, kCoarseShift = 0.2, kFineTurn = 0.05 * kDegree,
+                   kFineShift = 0.02;
+  ray::MemorySource cloud(pair.cloud), reference(pair.reference);
+  const auto begin = std::chrono::steady_clock::now();
+  const ray::CloudAlignment found = align_clouds({}, cloud, reference);
+  tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const PoseError error = error_of(found.pose, pair);
+  const bool is_coarse = error.turn < kCoarseTurn && error.shift < kCoarseShift;
+  const bool is_fine = error.turn < kFineTurn && error.shift < kFineShift;
+  ++tally.pairs;
+  if (!found.doubt.empty()) {
+    ++tally.refused;
+    tally.refused_right += is_coarse ? 1 : 0;
+  } else {
+    tally.coarse += is_coarse ? 1 : 0;
+    tally.fine += is_fine ? 1 : 0;
+    tally.wrong += is_coarse ? 0 : 1;
+    if (is_coarse) tally.turns.push_back(error.turn), tally.shifts.push_back(error.shift);
+  }
+  tell(found, error,
+       !found.doubt.empty() ? (is_coarse ? "refused, though right" : "refused")
+       : is_fine            ? "fine"
+       : is_coarse          ? "coarse"
+                            : "WRONG");
+}
+
+void pair_rows(const World& world, int pairs) {
+  constexpr int kScansOfWorld = 2;
+  std::vector<Scans> scans;
+  for (std::uint64_t seed = 1; seed <= kScansOfWorld; ++seed)
+    scans.push_back(scans_of(world, seed));
+  for (const double overlap : {1.0, 0.7, 0.5, 0.4, 0.3, 0.2}) {
+    Tally tally;
+    const ray::RandomStream random(7, world.name + std::to_string(std::lround(100.0 * overlap)));
+    for (int i = 0; i < pairs; ++i)
+      judge(cut_pair(scans[static_cast<std::size_t>(i % kScansOfWorld)], overlap, random,
+                     static_cast<std::uint64_t>(i)),
+            tally);
+    const auto percent = [&](int part) { return 100.0 * part / tally.pairs; };
+    const bool met =
+        tally.wrong == 0 && (overlap < 0.3 || percent(tally.fine) >= (overlap >= 0.5 ? 99.0 : 90.0));
+    std::printf(
+        "| %s, %.0f %% | %d | %.0f | %.0f | %.1f | %.0f | %.0f | %.4f, %.4f | %.4f, %.4f | %.2f | %s |\n",
+        world.name.c_str(), 100.0 * overlap, tally.pairs, percent(tally.coarse), percent(tally.fine),
+        percent(tally.wrong), percent(tally.refused), percent(tally.refused_right),
+        quantile(tally.turns, 0.5) / kDegree, quantile(tally.turns, 0.95) / kDegree,
+        quantile(tally.shifts, 0.5), quantile(tally.shifts, 0.95), tally.seconds / tally.pairs,
+        verdict(overlap >= 0.5   ? "fine ≥ 99, wrong < 0.5"
+                : overlap >= 0.3 ? "fine ≥ 90, wrong < 0.5"
+                                 : "wrong < 0.5",
+                met)
+            .c_str());
+    std::fflush(stdout);
+  }
+}
+
+void axes_rows() {
+  constexpr std::uint64_t kBuildings = 12;
+  constexpr double kHalfLength = 9.3, kHalfWidth = 5.8;  // m, of the outer walls
+  std::printf(
+      "\nA building to its own axes, from any yaw: the largest errors of %d buildings, each turned anew\n\n"
+      "| | yaw, degrees | corner, m | ground, m | bar | |\n|---|---|---|---|---|---|\n",
+      static_cast<int>(kBuildings));
+  const ray::RandomStream random(7, "axes");
+  for (const bool level : {false, true}) {
+    double turn = 0.0, corner = 0.0, ground = 0.0;
+    for (std::uint64_t seed = 1; seed <= kBuildings; ++seed) {
+      const ray::Scene scene = make_scene(ray::SceneKind::building, seed);
+      ray::RayCloud rays = read_all({}, *simulate(scene, {.rays = 1'000'000, .seed = seed}));
+      const auto uniform = [&](std::uint64_t draw, double low, double high) {
+        return low + (high - low) * random.uniform(seed, draw);
+      };
+      ray::Pose moved = ray::rotation_pose({0.0, 0.0, uniform(0, -3.1, 3.1)});
+      if (level)
+        moved.rotation =
+            ray::rotation_pose({uniform(1, -0.1, 0.1), uniform(2, -0.1, 0.1), 0.0}).rotation * moved.rotation;
+      moved.translation = {uniform(3, -100.0, 100.0), uniform(4, -100.0, 100.0), uniform(5, -10.0, 10.0)};
+      rays.transform(moved);
+      ray::MemorySource source(rays);
+      const ray::Pose found = align_to_axes({}, source, {.level = level}).pose;
+      const Eigen::Matrix3d whole = found.rotation * moved.rotation;
+      const double yaw = std::atan2(whole(1, 0), whole(0, 0)),
+                   quarter = std::remainder(yaw, std::numbers::pi / 2.0);
+      turn = std::max(turn,
+                      level ? Eigen::AngleAxisd(
+                                  Eigen::Matrix3d(ray::rotation_pose({0, 0, quarter - yaw}).rotation * whole))
+                                  .angle()
+                            : std::abs(quarter));
+      double nearest = 1e9;
+      for (const double x : {-kHalfLength, kHalfLength})
+        for (const double y : {-kHalfWidth, kHalfWidth})
+          nearest = std::min(nearest, (found * (moved * Eigen::Vector3d(x, y, 0.0))).head<2>().norm());
+      corner = std::max(corner, nearest);
+      ground = std::max(ground, std::abs((found * (moved * Eigen::Vector3d(0.0, 0.0, -0.15))).z()));
+    }
+    std::printf(
+        "| %s | %.4f | %.4f | %.4f | %s |\n", level ? "with roll and pitch, --level" : "yaw alone",
+        turn / kDegree, corner, ground,
+        verdict("0.05 degrees, 1 cm", turn < 0.05 * kDegree && corner < 0.01 && ground < 0.01).c_str());
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+void print_alignment() {
+  const char* pairs_given = std::getenv("RAYCLOUD_BENCH_PAIRS_PER_ROW");
+  const int pairs = pairs_given != nullptr ? std::atoi(pairs_given) : 24;
+  if (std::getenv("RAYCLOUD_BENCH_SKIP_AXES") == nullptr) axes_rows();
+  std::printf(
+      "\nOne cloud onto another: parts of two scans of one world with other people and vehicles in each, 2 cm of "
+      "noise, any yaw, up to 100 m apart; by the share of its points that each has in common with the other. "
+      "Coarse: within 0.5 degrees and 0.2 m; fine: 0.05 degrees and 2 cm; wrong: not coarse, and not refused\n\n"
+      "| world, overlap | pairs | coarse, %% | fine, %% | wrong, %% | refused, %% | of these right, %% | turn, degrees: "
+      "median, 95 %% | shift, m | seconds | bar | |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const ray::Scene building = make_scene(ray::SceneKind::building, 2),
+                   forest = make_scene(ray::SceneKind::forest, 2), street = street_scene(7, 0);
+  const auto world = [](const std::string& name, const ray::Scene& scene, std::uint64_t rays) {
+    return World{name, with_movers(scene, 6, 1), reversed(with_movers(scene, 6, 2)), rays};
+  };
+  pair_rows(world("building", building, 1'000'000), pairs);
+  pair_rows(world("street", street, 600'000), pairs);
+  pair_rows(world("forest", forest, 1'000'000), pairs);
+}
+
+}  // namespace bench

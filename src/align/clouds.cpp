@@ -1,0 +1,145 @@
+#include "hypotheses.h"
+
+#include <raycloud/align/clouds.h>
+#include <raycloud/core/error.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace ray {
+namespace {
+
+using namespace align;
+
+Known known_of(const Context& context, RaySource& source, const Survey& survey, double width) {
+  return {context, gather_surfaces(context, source, survey, width)};
+}
+
+void require_surfaces(const Survey& survey, const char* which) {
+  if (survey.bounded == 0)
+    throw Error(ErrorCode::no_data, std::string(which) + " has no bounded ray, so there is nothing to align");
+  if (!(survey.spacing > 0.0))
+    throw Error(ErrorCode::no_data, std::string(which) + " has too few points to align");
+}
+
+/// In metres, of where things come to lie, from that in the frames of the origins.
+Pose in_world(const Pose& pose, const Known& cloud, const Known& reference) {
+  return {pose.rotation,
+          pose.translation + reference.surfaces.survey.origin - pose.rotation * cloud.surfaces.survey.origin};
+}
+
+double share(double part, double whole) {
+  return whole > 0.0 ? part / whole : 0.0;
+}
+
+std::string percent(double share_of_one) {
+  return std::to_string(std::lround(100.0 * share_of_one)) + " %";
+}
+
+/// The covariance of turns and shifts: the residuals stand for noise. Patches of one wall share what is wrong
+/// with it, so that there are fewer that are independent.
+Matrix6 covariance_of(const FineFit& fit) {
+  constexpr double kTogether = 10.0;  // patches
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(fit.information);
+  const Vector6 values = solver.eigenvalues().cwiseMax(1e-12 * solver.eigenvalues().maxCoeff() + 1e-300);
+  return kTogether * fit.rmse * fit.rmse * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+/// With all patches; narrow ones too, where these are wide enough for noise not to make them round.
+FineFit last_fit(const Context& context, const Known& cloud, const Known& reference, const Pose& start) {
+  constexpr double kWideEnough = 0.25;  // m
+  constexpr double kShare = 0.5;        // of the patches, for the narrow ones to count
+  constexpr double kGate = 0.25;        // widths
+  const FineFit fit =
+      fit_patches(context, cloud.fine.patches(), reference.fine, start, {kGate * reference.fine.width(), 20});
+  if (reference.narrow.width() < kWideEnough) return fit;
+  const FineFit narrow = fit_patches(context, cloud.narrow.patches(), reference.narrow, fit.pose,
+                                     {kGate * reference.narrow.width(), 20});
+  return narrow.count < kShare * fit.count ? fit : narrow;
+}
+
+/// Hypotheses, the best first, and after them those that were looked for beside the best.
+struct Judged {
+  std::vector<Hypothesis> all;
+  std::vector<Hypothesis> aside;
+};
+
+Judged judge(const Context& context, const Known& cloud, const Known& reference, bool local) {
+  constexpr std::size_t kKept = 24;
+  Judged judged;
+  if (!local) judged.all = rough_hypotheses(context, cloud, reference);
+  judged.all.resize(std::min(judged.all.size(), kKept));
+  const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
+  judged.all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
+  judged.all = fitted(context, cloud, reference, std::move(judged.all));
+  judged.aside =
+      fitted(context, cloud, reference, aside_of(context, judged.all.front().pose, cloud, reference));
+  if (judged.aside.front().score > judged.all.front().score)
+    judged.all.insert(judged.all.begin(), judged.aside.front());
+  return judged;
+}
+
+/// Why the best is not to be trusted; empty if it is. Of the others, those that came to lie elsewhere are
+/// rivals, and those that began beside it and came to about the same place should have come to just that.
+std::string doubt_of(const Judged& judged, const Known& cloud, double overlap) {
+  constexpr double kLeastSame = 100.0, kLeastOverlap = 0.1, kMostAgainst = 0.02, kMostRival = 0.7;
+  constexpr double kLoose = 0.25;  // widths
+  const Hypothesis& best = judged.all.front();
+  Agreement both = best.there;
+  both += best.back;
+  const double same = both.all().same, against = share(both.against, same + both.against);
+  const std::string found = "the best overlap found is " + percent(overlap);
+  if (same < kLeastSame || overlap < kLeastOverlap || !(best.score > 0.0))
+    return "too few surfaces are in both: " + found;
+  if (against > kMostAgainst)
+    return percent(against) +
+           " of the surfaces would be where the other cloud has seen that there are none: " + found;
+  const double rival = kMostRival * best.score;
+  const auto is_elsewhere = [&](const Hypothesis& other) {
+    return other.score > rival && !is_same_place(other.pose, best.pose, cloud);
+  };
+  const auto is_loose = [&](const Hypothesis& other) {
+    const double apart = (other.pose.translation - best.pose.translation).norm();
+    return other.score > rival && apart > kLoose * cloud.fine.width();
+  };
+  if (std::any_of(judged.all.begin(), judged.all.end(), is_elsewhere) ||
+      std::any_of(judged.aside.begin(), judged.aside.end(), is_loose))
+    return "it fits nearly as well elsewhere: " + found;
+  return {};
+}
+
+}  // namespace
+
+CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, RaySource& reference_source,
+                            const AlignRule& rule) {
+  const Survey of_cloud = survey_ends(context, cloud_source),
+               of_reference = survey_ends(context, reference_source);
+  require_surfaces(of_cloud, "the cloud");
+  require_surfaces(of_reference, "the reference");
+  const double width = std::max(patch_width(of_cloud), patch_width(of_reference));
+  const Known cloud = known_of(context, cloud_source, of_cloud, width),
+              reference = known_of(context, reference_source, of_reference, width);
+
+  const Judged judged = judge(context, cloud, reference, rule.local);
+  const Hypothesis& best = judged.all.front();
+  const FineFit fit = last_fit(context, cloud, reference, best.pose);
+  CloudAlignment alignment;
+  alignment.pose = in_world(fit.pose, cloud, reference);
+  alignment.rmse = fit.rmse;
+  alignment.patches = fit.count;
+  alignment.covariance = covariance_of(fit);
+  alignment.centre = fit.centre + of_reference.origin;
+  const Agreement::Counts there = best.there.all(), back = best.back.all();
+  alignment.overlap = share(there.same, there.known() + there.unknown);
+  alignment.reference_overlap = share(back.same, back.known() + back.unknown);
+  alignment.agreement = share(there.same + back.same, there.known() + back.known());
+  alignment.doubt = doubt_of(judged, cloud, std::max(alignment.overlap, alignment.reference_overlap));
+  alignment.dropped = of_cloud.dropped + of_reference.dropped;
+  return alignment;
+}
+
+}  // namespace ray

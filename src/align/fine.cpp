@@ -1,0 +1,172 @@
+#include "fine.h"
+
+#include <raycloud/exec/parallel.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ray::align {
+namespace {
+
+/// The normal equation of a step.
+struct Equation {
+  Matrix6 information = Matrix6::Zero();
+  Vector6 pull = Vector6::Zero();
+  double squares = 0.0, weights = 0.0, count = 0.0;
+};
+
+Equation sum_of(Equation a, const Equation& b) {
+  a.information += b.information;
+  a.pull += b.pull;
+  a.squares += b.squares, a.weights += b.weights, a.count += b.count;
+  return a;
+}
+
+/// The nearest patch of the same kind whose surface heads the same way.
+const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, const Eigen::Vector3d& place,
+                            const Eigen::Matrix3d& rotation) {
+  constexpr double kAligned = 0.8;  // cosine
+  const bool is_flat = patch.is_flat(), is_thin = patch.is_thin();
+  if (!is_flat && !is_thin) return nullptr;
+  const Eigen::Vector3d heading = rotation * (is_flat ? patch.normal : patch.along);
+  const Patch* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  reference.each_near(place, [&](const Patch& other) {
+    const double distance2 = (other.mean - place).squaredNorm();
+    if (distance2 >= least) return;
+    const bool fits = is_flat ? other.is_flat() && other.normal.dot(heading) > kAligned
+                              : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
+    if (fits) least = distance2, nearest = &other;
+  });
+  return nearest;
+}
+
+/// Adds one equation: the distance `off` (m) along `direction` is to vanish.
+void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
+         Equation& equation) {
+  Vector6 row;
+  row << arm.cross(direction), direction;
+  equation.information.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+  equation.pull += weight * off * row;
+  equation.squares += weight * off * off;
+  equation.weights += weight;
+}
+
+Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference, const FineFit& at,
+                     const FineRule& rule) {
+  constexpr double kLeastSigma = 0.003;  // m; means are no truer than that, however many points
+  Equation equation;
+  const Eigen::Matrix3d& rotation = at.pose.rotation;
+  for (const Patch& patch : patches) {
+    const Eigen::Vector3d place = at.pose * patch.mean;
+    const Patch* other = counterpart_of(patch, reference, place, rotation);
+    if (other == nullptr) continue;
+    const Eigen::Vector3d apart = other->mean - place, arm = place - at.centre;
+    const auto weight_of = [&](double off, double variances) {
+      const double u = off / rule.gate;
+      // A patch that is rough, or has few points, is less sure of where it is.
+      const double sigma2 = variances + kLeastSigma * kLeastSigma;
+      return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) * kLeastSigma * kLeastSigma / sigma2 : 0.0;
+    };
+    const auto variance_of_mean = [](const Patch& one, int i) { return one.variances[i] / one.count; };
+    if (patch.is_flat()) {
+      const double off = other->normal.dot(apart);
+      const double weight = weight_of(off, variance_of_mean(patch, 0) + variance_of_mean(*other, 0));
+      if (weight > 0.0) add(arm, other->normal, off, weight, equation), equation.count += 1.0;
+    } else {
+      const Eigen::Vector3d across = apart - other->along * other->along.dot(apart);
+      const double off = across.norm();
+      const double weight = weight_of(off, variance_of_mean(patch, 1) + variance_of_mean(*other, 1));
+      if (!(weight > 0.0)) continue;
+      const Eigen::Vector3d first = other->along.unitOrthogonal(), second = other->along.cross(first);
+      add(arm, first, first.dot(apart), 0.5 * weight, equation);
+      add(arm, second, second.dot(apart), 0.5 * weight, equation);
+      equation.count += 1.0;
+    }
+  }
+  return equation;
+}
+
+Vector6 step_of(Equation equation, bool upright) {
+  constexpr double kDamping = 1e-6;
+  Matrix6 information = equation.information.selfadjointView<Eigen::Lower>();
+  if (upright) {
+    information.topRows<2>().setZero(), information.leftCols<2>().setZero();
+    equation.pull.head<2>().setZero();
+  }
+  // What nothing holds stays where it is: damping is by the largest information of turns and of shifts.
+  const double turns = information.diagonal().head<3>().maxCoeff(),
+               shifts = information.diagonal().tail<3>().maxCoeff();
+  for (Eigen::Index i = 0; i < 6; ++i)
+    information(i, i) += kDamping * (i < 3 ? turns : shifts) + 1e-300;
+  if (upright) information(0, 0) = information(1, 1) = 1.0;
+  return information.ldlt().solve(equation.pull);
+}
+
+template <class Sum>
+FineFit fit(std::span<const Patch> patches, const Pose& start, const FineRule& rule, const Sum& sum) {
+  constexpr double kLeastTurn = 1e-6, kLeastShift = 1e-5;
+  FineFit at;
+  at.pose = start;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Patch& patch : patches)
+    middle += patch.mean / static_cast<double>(patches.size());
+  for (int step = 0; step < rule.steps; ++step) {
+    at.centre = at.pose * middle;
+    const Equation equation = sum(at);
+    at.count = equation.count;
+    at.information = equation.information.template selfadjointView<Eigen::Lower>();
+    at.rmse = equation.weights > 0.0 ? std::sqrt(equation.squares / equation.weights) : 0.0;
+    constexpr double kLeastPatches = 6.0;
+    if (equation.count < kLeastPatches) return at;
+    const Vector6 change = step_of(equation, rule.upright);
+    if (!change.allFinite()) return at;
+    const Eigen::Vector3d turn = change.head<3>(), shift = change.tail<3>();
+    const Eigen::Matrix3d rotation = rotation_pose(turn).rotation;
+    at.pose.translation = rotation * (at.pose.translation - at.centre) + at.centre + shift;
+    at.pose.rotation = rotation * at.pose.rotation;
+    if (turn.norm() < kLeastTurn && shift.norm() < kLeastShift) break;
+  }
+  // Products of many rotations stay one.
+  at.pose.rotation = Eigen::Quaterniond(at.pose.rotation).normalized().toRotationMatrix();
+  return at;
+}
+
+}  // namespace
+
+FineFit fit_patches(std::span<const Patch> patches, const PatchLevel& reference, const Pose& start,
+                    const FineRule& rule) {
+  return fit(patches, start, rule,
+             [&](const FineFit& at) { return equation_of(patches, reference, at, rule); });
+}
+
+FineFit fit_patches(const Context& context, std::span<const Patch> patches, const PatchLevel& reference,
+                    const Pose& start, const FineRule& rule) {
+  constexpr std::size_t kGrain = 512;
+  return fit(patches, start, rule, [&](const FineFit& at) {
+    return parallel_reduce(
+        context, patches.size(), kGrain, Equation(),
+        [&](std::size_t begin, std::size_t end) {
+          return equation_of(patches.subspan(begin, end - begin), reference, at, rule);
+        },
+        sum_of);
+  });
+}
+
+std::vector<Patch> some_of(const std::vector<Patch>& patches, std::size_t most) {
+  if (patches.size() <= most) return patches;
+  std::vector<Patch> some;
+  some.reserve(most);
+  // Strides of a key order would keep rows of space; the golden ratio keeps none.
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15U;
+  const auto threshold =
+      static_cast<std::uint64_t>(0x1p64 * (static_cast<double>(most) / static_cast<double>(patches.size())));
+  for (std::size_t i = 0; i < patches.size() && some.size() < most; ++i)
+    if (i * kGolden < threshold) some.push_back(patches[i]);
+  return some;
+}
+
+}  // namespace ray::align
