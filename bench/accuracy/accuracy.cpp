@@ -26,13 +26,11 @@ void print_all_transients() {
   bench::print_transients();
 }
 
-constexpr std::array kTopics{Topic{"normals", bench::print_normals},
-                             Topic{"smoothing", bench::print_smoothing},
-                             Topic{"denoising", print_all_denoising},
-                             Topic{"transients", print_all_transients},
-                             Topic{"merging", bench::print_merging},
-                             Topic{"alignment", bench::print_alignment},
-                             Topic{"terrain", bench::print_terrain}};
+constexpr std::array kTopics{
+    Topic{"normals", bench::print_normals},  Topic{"smoothing", bench::print_smoothing},
+    Topic{"denoising", print_all_denoising}, Topic{"transients", print_all_transients},
+    Topic{"merging", bench::print_merging},  Topic{"alignment", bench::print_alignment},
+    Topic{"terrain", bench::print_terrain}};
 
 }  // namespace
 
