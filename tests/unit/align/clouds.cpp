@@ -6,7 +6,6 @@
 #include <raycloud/core/error.h>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 namespace ray {
 namespace {
@@ -32,7 +31,7 @@ void expect_undone(const Pose& pose, const Pose& moved, const RayCloud& rays, do
 
 TEST(AlignClouds, ARoomFromAnywhere) {
   const RayCloud reference = room_scan(1);
-  for (const double yaw : {0.0, 33.0, 90.0, 200.0}) {
+  for (const double yaw : {33.0, 180.0}) {
     RayCloud rays = room_scan(2);
     const Pose moved = moved_by(yaw, {400'000.0 + 3.0 * yaw, 5'000'000.0 - yaw, 12.0});
     rays.transform(moved);
