@@ -49,16 +49,13 @@ TEST(AlignClouds, IsTheSameBitsForAnyThreadsAndChunks) {
   const RayCloud reference = room_scan(1, 20'000);
   RayCloud rays = room_scan(2, 20'000);
   rays.transform(moved_by(70.0, {3, 2, 1}));
-  const CloudAlignment expected = aligned_with(rays, reference);
-  for (const unsigned threads : {1U, 8U}) {
-    const CloudAlignment found =
-        aligned_with(rays, reference, {}, {.threads = threads}, threads == 1U ? 7U : 1'000'000U);
-    EXPECT_EQ(found.pose.rotation, expected.pose.rotation);
-    EXPECT_EQ(found.pose.translation, expected.pose.translation);
-    EXPECT_EQ(found.covariance, expected.covariance);
-    EXPECT_EQ(found.overlap, expected.overlap);
-    EXPECT_EQ(found.doubt, expected.doubt);
-  }
+  const CloudAlignment expected = aligned_with(rays, reference, {}, {.threads = 1}, 7);
+  const CloudAlignment found = aligned_with(rays, reference, {}, {.threads = 8}, 1'000'000);
+  EXPECT_EQ(found.pose.rotation, expected.pose.rotation);
+  EXPECT_EQ(found.pose.translation, expected.pose.translation);
+  EXPECT_EQ(found.covariance, expected.covariance);
+  EXPECT_EQ(found.overlap, expected.overlap);
+  EXPECT_EQ(found.doubt, expected.doubt);
 }
 
 TEST(AlignClouds, LocallyWhereTheyNearlyAre) {
