@@ -247,8 +247,8 @@ void axes_rows() {
 
 void print_alignment() {
   const char* pairs_given = std::getenv("RAYCLOUD_BENCH_PAIRS_PER_ROW");
-  const int pairs = pairs_given != nullptr ? std::atoi(pairs_given) : 24;
-  if (std::getenv("RAYCLOUD_BENCH_SKIP_AXES") == nullptr) axes_rows();
+  const int pairs = pairs_given != nullptr ? std::atoi(pairs_given) : 6;
+  axes_rows();
   std::printf(
       "\nOne cloud onto another: parts of two scans of one world with other people and vehicles in each, 2 cm of "
       "noise, any yaw, up to 100 m apart; by the share of its points that each has in common with the other. "

@@ -130,7 +130,7 @@ std::optional<Eigen::Matrix3d> levelling(const std::vector<Floor>& floors) {
   constexpr double kMostTilt = 0.26;  // rad, 15 degrees
   if (floors.empty()) return {};
   Eigen::Matrix3d rotation = to_up(usual_normal(floors, kMostTilt));
-  for (const double reach : {0.4, 0.2, 0.1, 0.06, 0.06}) {
+  for (const double reach : {0.1, 0.08, 0.06, 0.06, 0.06}) {  // less than a step
     const std::vector<Floor> level = turned(floors, rotation);
     const std::optional<Ground> ground = ground_of(level);
     if (!ground) return {};

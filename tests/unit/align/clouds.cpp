@@ -6,7 +6,6 @@
 #include <raycloud/core/error.h>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 namespace ray {
 namespace {
@@ -32,7 +31,7 @@ void expect_undone(const Pose& pose, const Pose& moved, const RayCloud& rays, do
 
 TEST(AlignClouds, ARoomFromAnywhere) {
   const RayCloud reference = room_scan(1);
-  for (const double yaw : {0.0, 33.0, 90.0, 200.0}) {
+  for (const double yaw : {33.0, 180.0}) {
     RayCloud rays = room_scan(2);
     const Pose moved = moved_by(yaw, {400'000.0 + 3.0 * yaw, 5'000'000.0 - yaw, 12.0});
     rays.transform(moved);
@@ -50,16 +49,13 @@ TEST(AlignClouds, IsTheSameBitsForAnyThreadsAndChunks) {
   const RayCloud reference = room_scan(1, 20'000);
   RayCloud rays = room_scan(2, 20'000);
   rays.transform(moved_by(70.0, {3, 2, 1}));
-  const CloudAlignment expected = aligned_with(rays, reference);
-  for (const unsigned threads : {1U, 8U}) {
-    const CloudAlignment found =
-        aligned_with(rays, reference, {}, {.threads = threads}, threads == 1U ? 7U : 1'000'000U);
-    EXPECT_EQ(found.pose.rotation, expected.pose.rotation);
-    EXPECT_EQ(found.pose.translation, expected.pose.translation);
-    EXPECT_EQ(found.covariance, expected.covariance);
-    EXPECT_EQ(found.overlap, expected.overlap);
-    EXPECT_EQ(found.doubt, expected.doubt);
-  }
+  const CloudAlignment expected = aligned_with(rays, reference, {}, {.threads = 1}, 7);
+  const CloudAlignment found = aligned_with(rays, reference, {}, {.threads = 8}, 1'000'000);
+  EXPECT_EQ(found.pose.rotation, expected.pose.rotation);
+  EXPECT_EQ(found.pose.translation, expected.pose.translation);
+  EXPECT_EQ(found.covariance, expected.covariance);
+  EXPECT_EQ(found.overlap, expected.overlap);
+  EXPECT_EQ(found.doubt, expected.doubt);
 }
 
 TEST(AlignClouds, LocallyWhereTheyNearlyAre) {
