@@ -1,154 +1,192 @@
 #include "face_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace ray {
+namespace {
 
-/// What a node's child is.
-struct FaceTree::Part {
-  Bounds bounds;
-  std::uint32_t child = 0;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
+constexpr double kSingleStep = 2.4e-7;  // of a coordinate, after its rounding and a few operations
+constexpr float kNowhere = std::numeric_limits<float>::max();
 
-FaceTree::Box FaceTree::boxed(const Bounds& bounds) const {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    box.low[i] = std::nextafter(static_cast<float>(bounds.min[axis] - centre_[axis]), -kInfinity);
-    box.high[i] = std::nextafter(static_cast<float>(bounds.max[axis] - centre_[axis]), kInfinity);
-  }
-  return box;
-}
-
-double FaceTree::squared_distance(const Box& box, const Eigen::Vector3d& local) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double at = local[static_cast<Eigen::Index>(i)];
-    const double away = std::max({double{box.low[i]} - at, at - double{box.high[i]}, 0.0});
-    sum += away * away;
-  }
-  return sum;
-}
+}  // namespace
 
 FaceTree::FaceTree(const Mesh& mesh) {
   Bounds all;
   std::vector<Eigen::Vector3d> centres;
+  faces_.reserve(mesh.faces.size());
+  centres.reserve(mesh.faces.size());
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    Leaf& leaf = leaves_.emplace_back();
+    Leaf& leaf = faces_.emplace_back();
     leaf.face = f;
     leaf.corners.vertices = mesh.faces[f];
     Bounds box;
     for (std::size_t i = 0; i < 3; ++i)
       box.add(leaf.corners.at[i] = mesh.vertices[mesh.faces[f][i]]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d side = leaf.corners.at[(i + 1) % 3] - leaf.corners.at[i];
+      leaf.spread = std::max(leaf.spread, side.squaredNorm() / 3.0);
+    }
     all.add(box);
     centres.emplace_back(box.min + box.max);
   }
   centre_ = 0.5 * (all.min + all.max);
-  slack_ = 1e-18 * all.extent().squaredNorm();
-  const Part root = build(0, static_cast<std::uint32_t>(leaves_.size()), centres);
-  if (root.count > 0) {  // a mesh of few faces: a node with one child that is empty
-    Node& node = nodes_.emplace_back();
-    node.boxes[0] = boxed(root.bounds);
-    node.boxes[1].low.fill(std::numeric_limits<float>::infinity());
-    node.boxes[1].high.fill(-std::numeric_limits<float>::infinity());
-    node.count[0] = root.count;
-  }
-  for (std::uint32_t i = 0; i < leaves_.size(); ++i)
-    boxes_.push_back(boxed(bounds_of(i, i + 1)));
-  places_.resize(leaves_.size());
-  for (std::uint32_t i = 0; i < leaves_.size(); ++i)
-    places_[leaves_[i].face] = i;
+  half_size_ = 0.5 * all.extent().norm();
+  Bounds bounds;
+  build(0, static_cast<std::uint32_t>(faces_.size()), centres, bounds);
+  places_.resize(faces_.size());
+  for (std::uint32_t i = 0; i < faces_.size(); ++i)
+    places_[faces_[i].face] = i;
 }
 
-Bounds FaceTree::bounds_of(std::uint32_t begin, std::uint32_t end) const {
-  Bounds box;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    for (const Eigen::Vector3d& corner : leaves_[i].corners.at)
-      box.add(corner);
-  }
-  return box;
-}
-
-FaceTree::Part FaceTree::build(std::uint32_t begin, std::uint32_t end,
-                               const std::vector<Eigen::Vector3d>& centres) {
-  if (end - begin <= kLeafFaces) return {bounds_of(begin, end), 0, begin, end - begin};
+/// In two halves along the longest side of their centres; returns where the second begins.
+std::uint32_t FaceTree::split(std::uint32_t begin, std::uint32_t end,
+                              const std::vector<Eigen::Vector3d>& centres) {
   Bounds spread;
   for (std::uint32_t i = begin; i < end; ++i)
-    spread.add(centres[leaves_[i].face]);
+    spread.add(centres[faces_[i].face]);
   Eigen::Index axis = 0;
   spread.extent().maxCoeff(&axis);
-  // Leaves are full but for the last, so that half the boxes are not wasted.
-  const std::uint32_t half = ((end - begin) / 2 + kLeafFaces - 1) / kLeafFaces * kLeafFaces;
-  const auto at = [&](std::uint32_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(begin), at(begin + half), at(end), [&](const Leaf& a, const Leaf& b) {
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  const auto at = [&](std::uint32_t i) { return faces_.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [&](const Leaf& a, const Leaf& b) {
     const double of_a = centres[a.face][axis];
     const double of_b = centres[b.face][axis];
     return of_a < of_b || (of_a == of_b && a.face < b.face);
   });
-  const auto place = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  const Part parts[2] = {build(begin, begin + half, centres), build(begin + half, end, centres)};
-  Bounds box;
-  for (std::size_t i = 0; i < 2; ++i) {
-    nodes_[place].boxes[i] = boxed(parts[i].bounds);
-    nodes_[place].child[i] = parts[i].child;
-    nodes_[place].first[i] = parts[i].first;
-    nodes_[place].count[i] = parts[i].count;
-    box.add(parts[i].bounds);
-  }
-  return {box, place, 0, 0};
+  return middle;
 }
 
-NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, double enough) const {
-  NearestFace best{
-      nearest_on_face(point, leaves_[places_[near]].corners, std::numeric_limits<double>::infinity()), near};
-  const Eigen::Vector3d local = point - centre_;
-  const auto bound = [&] { return best.nearest.squared * (1.0 + 1e-12) + slack_; };
-  double reach = bound();
-  const auto look_at = [&](std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = first; i < first + count; ++i) {
-      if (squared_distance(boxes_[i], local) > reach) continue;
-      const NearestPlace found = nearest_on_face(point, leaves_[i].corners, bound());
-      const bool wins = found.squared < best.nearest.squared ||
-                        (found.squared == best.nearest.squared && leaves_[i].face < best.face);
-      if (!wins) continue;
-      best = {found, leaves_[i].face};
-      reach = bound();
-    }
-  };
-  struct Waiting {
-    std::uint32_t node;
-    double squared;
-  };
-  std::array<Waiting, 64> waiting;  // the tree is balanced, so 2^32 faces are 31 deep
-  std::size_t count = 0;
-  std::uint32_t at = 0;
-  while (best.nearest.squared >= enough) {
-    const Node& node = nodes_[at];
-    const double squared[2] = {squared_distance(node.boxes[0], local),
-                               squared_distance(node.boxes[1], local)};
-    const std::size_t nearer = squared[1] < squared[0] ? 1 : 0;
-    bool down = false;
-    for (const std::size_t i : {1 - nearer, nearer}) {  // the nearer one comes last and is gone into next
-      if (node.count[i] > 0 || !(squared[i] <= bound())) continue;
-      waiting[count++] = {node.child[i], squared[i]};
-    }
-    for (const std::size_t i : {nearer, 1 - nearer})
-      if (node.count[i] > 0 && squared[i] <= bound()) look_at(node.first[i], node.count[i]);
-    while (count > 0 && !down) {
-      --count;
-      down = waiting[count].squared <= bound();
-    }
-    if (!down) break;
-    at = waiting[count].node;
+void FaceTree::set_child(Node& node, std::uint32_t child, const Bounds& bounds) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::size_t i = node.count++;
+  node.child[i] = child;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    node.low[axis][i] = std::nextafter(static_cast<float>(bounds.min[a] - centre_[a]), -kInfinity);
+    node.high[axis][i] = std::nextafter(static_cast<float>(bounds.max[a] - centre_[a]), kInfinity);
   }
-  return best;
+}
+
+std::uint32_t FaceTree::build(std::uint32_t begin, std::uint32_t end,
+                              const std::vector<Eigen::Vector3d>& centres, Bounds& bounds) {
+  std::array<std::uint32_t, kWide + 1> cuts{begin, begin, begin, end, end};
+  if (end - begin <= kWide) {
+    for (std::uint32_t i = 0; i <= kWide; ++i)
+      cuts[i] = std::min(begin + i, end);
+  } else {
+    cuts[2] = split(begin, end, centres);
+    cuts[1] = split(begin, cuts[2], centres);
+    cuts[3] = split(cuts[2], end, centres);
+  }
+  const auto place = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  Node node;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    node.low[axis].fill(kNowhere);
+    node.high[axis].fill(kNowhere);
+  }
+  for (std::size_t part = 0; part < kWide; ++part) {
+    const std::uint32_t first = cuts[part];
+    const std::uint32_t last = cuts[part + 1];
+    if (first == last) continue;
+    Bounds own;
+    std::uint32_t child = first | kFaceBit;
+    if (last - first > 1) {
+      child = build(first, last, centres, own);
+    } else {
+      for (const Eigen::Vector3d& corner : faces_[first].corners.at)
+        own.add(corner);
+    }
+    set_child(node, child, own);
+    bounds.add(own);
+  }
+  nodes_[place] = node;
+  return place;
+}
+
+/// One point's search: the best so far, and how near in single precision a box must be to matter.
+struct FaceTree::Search {
+  Search(const FaceTree& tree, const Eigen::Vector3d& at, std::uint32_t near)
+      : point(at), local((at - tree.centre_).cast<float>()) {
+    const double largest = (at - tree.centre_).cwiseAbs().maxCoeff() + tree.half_size_;
+    slack = kSingleStep * largest;
+    const Corners& corners = tree.faces_[tree.places_[near]].corners;
+    best = {nearest_on_face(point, corners, std::numeric_limits<double>::infinity()), near};
+    set_reach();
+  }
+
+  void set_reach() {
+    const double distance = std::sqrt(best.nearest.squared) + slack;
+    reach = static_cast<float>(std::min(distance * distance * (1.0 + 1e-6), 1e38));
+  }
+
+  void look_at(const Leaf& leaf) {
+    const double bound = best.nearest.squared * (1.0 + 1e-12) + slack * slack;
+    // For a place of the face with weights w of its corners, |p - place|² = Σ w_i |p - corner_i|² -
+    // Σ w_i w_j side_ij², so from afar no place is much nearer than the nearest corner.
+    double corner = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& at : leaf.corners.at)
+      corner = std::min(corner, (point - at).squaredNorm());
+    if (corner - leaf.spread > bound) return;
+    const NearestPlace found = nearest_on_face(point, leaf.corners, bound);
+    if (found.squared > best.nearest.squared) return;
+    if (found.squared == best.nearest.squared && leaf.face >= best.face) return;
+    best = {found, leaf.face};
+    set_reach();
+  }
+
+  [[nodiscard]] Wide squared_distances(const Node& node) const {
+    Wide sum{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float at = local[static_cast<Eigen::Index>(axis)];
+      for (std::size_t i = 0; i < kWide; ++i) {
+        const float below = node.low[axis][i] - at;
+        const float above = at - node.high[axis][i];
+        const float away = below > above ? below : above;
+        const float outside = away > 0.0f ? away : 0.0f;
+        sum[i] += outside * outside;
+      }
+    }
+    return sum;
+  }
+
+  const Eigen::Vector3d& point;
+  Eigen::Vector3f local;
+  double slack = 0.0;  ///< m; what single precision may do to a distance
+  float reach = 0.0f;  ///< m²
+  NearestFace best;
+};
+
+NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, double enough) const {
+  Search search(*this, point, near);
+  struct Waiting {
+    std::uint32_t child = 0;
+    float squared = 0.0f;
+  };
+  std::array<Waiting, 64> waiting;  // three of each level stay, and 2^31 faces are 16 levels
+  std::size_t count = 0;
+  waiting[count++] = {0, 0.0f};
+  while (count > 0 && search.best.nearest.squared >= enough) {
+    const Waiting next = waiting[--count];
+    if (!(next.squared <= search.reach)) continue;
+    if ((next.child & kFaceBit) != 0) {
+      search.look_at(faces_[next.child ^ kFaceBit]);
+      continue;
+    }
+    const Node& node = nodes_[next.child];
+    const Wide squared = search.squared_distances(node);
+    const std::size_t first = count;
+    for (std::size_t i = 0; i < node.count; ++i) {
+      if (!(squared[i] <= search.reach)) continue;
+      std::size_t at = count++;  // the nearest goes on top
+      for (; at > first && waiting[at - 1].squared < squared[i]; --at)
+        waiting[at] = waiting[at - 1];
+      waiting[at] = {node.child[i], squared[i]};
+    }
+  }
+  return search.best;
 }
 
 }  // namespace ray

@@ -2,7 +2,8 @@
 /// A tree of boxes around the faces of a mesh, to find the nearest.
 ///
 /// Embree, which the project has for rays, has a point query too; with it the same work took half again as
-/// long, and results had to be kept from depending on its single precision.
+/// long as with a plain tree of two boxes a node, and results had to be kept from depending on its single
+/// precision.
 
 #include "nearest_on_triangle.h"
 
@@ -21,7 +22,8 @@ struct NearestFace {
 
 class FaceTree {
  public:
-  /// Precondition: at least one face; every face has an area. O(n log n); 250 bytes a face.
+  /// Precondition: at least one face; every face has an area. O(n log n); 150 bytes a face. At most 2^31
+  /// faces.
   explicit FaceTree(const Mesh& mesh);
 
   /// The nearest face, of several at the same distance the first; or any face whose squared distance is less
@@ -31,35 +33,34 @@ class FaceTree {
                                  double enough = -1.0) const;
 
  private:
-  static constexpr std::uint32_t kLeafFaces = 4;
-  /// Around the centre of the mesh, and no smaller than what is in it. Single precision, as there are many.
-  struct Box {
-    std::array<float, 3> low{}, high{};
-  };
-  /// Each of two children is a node, or faces [first, first + count).
+  static constexpr std::size_t kWide = 4;
+  static constexpr std::uint32_t kFaceBit = std::uint32_t{1} << 31;
+  using Wide = std::array<float, kWide>;
+  /// Boxes around the centre of the mesh, no smaller than what is in them, side by side and in single
+  /// precision.
   struct Node {
-    Box boxes[2];
-    std::uint32_t child[2] = {0, 0};
-    std::uint32_t first[2] = {0, 0};
-    std::uint32_t count[2] = {0, 0};  ///< 0: the child is a node
+    std::array<Wide, 3> low{}, high{};
+    std::array<std::uint32_t, kWide> child{};  ///< a node, or with kFaceBit a place in `faces_`
+    std::uint32_t count = 0;
   };
   struct Leaf {
     Corners corners;
     std::uint32_t face = 0;
+    double spread = 0.0;  ///< m²; a third of the square of the longest side
   };
-  struct Part;
+  struct Search;
 
-  Part build(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3d>& centres);
-  [[nodiscard]] Bounds bounds_of(std::uint32_t begin, std::uint32_t end) const;
-  [[nodiscard]] Box boxed(const Bounds& bounds) const;
-  static double squared_distance(const Box& box, const Eigen::Vector3d& local);
+  /// Makes the node of faces [begin, end) and returns its place; `bounds` gets what it holds.
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3d>& centres,
+                      Bounds& bounds);
+  std::uint32_t split(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3d>& centres);
+  void set_child(Node& node, std::uint32_t child, const Bounds& bounds) const;
 
   std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;           ///< in the order of the tree
-  std::vector<Box> boxes_;             ///< of each leaf
-  std::vector<std::uint32_t> places_;  ///< of each face in `leaves_`
+  std::vector<Leaf> faces_;            ///< in the order of the tree
+  std::vector<std::uint32_t> places_;  ///< of each face in `faces_`
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  double slack_ = 0.0;  ///< m²; what rounding may do to a distance
+  double half_size_ = 0.0;
 };
 
 }  // namespace ray

@@ -111,6 +111,7 @@ class LevelChoice {
 
   /// The lowest from level `from` on that has support.
   [[nodiscard]] std::size_t lowest_supported(std::size_t cell, std::size_t from) const {
+    if (cells_[cell].count == 0) return kLevels;
     const std::int64_t rings = rings_of(cell);
     for (std::size_t i = from; i < kLevels && cells_[cell].levels[i].count > 0; ++i)
       if (has_support(cell, i, rings)) return i;

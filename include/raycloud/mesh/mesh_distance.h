@@ -20,7 +20,8 @@ class MeshDistance {
  public:
   /// Welds the mesh (`mesh/weld.h`), turns neighbouring faces so that they agree on their front, and then
   /// all of them where a closed mesh shows its front to the inside, or every face of an open one looks
-  /// down. Throws Error(no_data) if no face has an area; O(n log n); some 400 bytes a face.
+  /// down. Throws Error(no_data) if no face has an area; O(n log n); some 400 bytes a face, at most 2^31 of
+  /// them.
   explicit MeshDistance(const Mesh& mesh);
   ~MeshDistance();
   MeshDistance(MeshDistance&&) noexcept;
