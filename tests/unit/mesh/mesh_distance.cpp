@@ -79,7 +79,7 @@ RC_GTEST_PROP(MeshDistance, IsThatOfASlowOracleAroundClosedMeshes, ()) {
     std::swap(given.faces[f][0], given.faces[f][1]);
   const MeshDistance distance(given);
   RC_ASSERT(distance.topology().is_sphere());
-  const std::vector<Vector> places = places_near(mesh, random, 200);
+  const std::vector<Vector> places = places_near(mesh, random, 50);
   const std::vector<double> found = distance.at(places);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double slow = slow_distance(places[i], mesh);

@@ -152,7 +152,7 @@ TEST(BlockRegions, knowWhatTheWholeCloudDoes) {
   const Scored whole = scored_whole(cloud);
   EXPECT_GT(std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
             200);
-  for (const std::size_t memory : {200UL << 10, 50UL << 10, 15UL << 10})
+  for (const std::size_t memory : {200UL << 10, 50UL << 10})
     expect_same(scored_in_blocks(cloud, {.memory = memory}), whole);
 }
 
