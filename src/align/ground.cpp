@@ -94,6 +94,7 @@ std::optional<Ground> ground_of(const std::vector<Floor>& floors) {
   constexpr double kBin = 0.05;  // m
   constexpr double kShare = 1.0 / 3.0;
   constexpr double kNear = 0.1;  // m
+  if (floors.empty()) return {};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Floor& floor : floors)
     low = std::min(low, floor.place.z()), high = std::max(high, floor.place.z());
