@@ -26,7 +26,8 @@ int main(int argc, char** argv) {
   std::vector<std::vector<double>> seconds(commands.size());
   for (const long millions : sizes) {
     const std::string cloud = paths.file("growing.ply"), out = paths.file("out.ply");
-    bench::run(paths.bin + "/tile_cloud " + paths.big + " " + std::to_string(millions) + "000000 " + cloud);
+    bench::run(paths.bin + "/tile_cloud " + paths.big + " " + std::to_string(millions) + "000000 " + cloud +
+               " 120");
     for (std::size_t i = 0; i < commands.size(); ++i) {
       const std::string& words = commands[i];
       const std::size_t name = std::min(words.find(' '), words.size());

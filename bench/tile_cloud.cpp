@@ -1,6 +1,8 @@
 // Makes a large ray cloud for benchmarks by laying copies of a real one side by side, as a scanner would that
-// drove the same street again and again: copies overlap, and times go on.
-//   tile_cloud CLOUD.ply RAYS OUT.ply
+// drove the same street again and again: copies overlap, and times go on. So the more copies, the denser is
+// the cloud, and rays of one copy go through the surfaces of others; copies that are as far apart as they are
+// wide do neither.
+//   tile_cloud CLOUD.ply RAYS OUT.ply [METRES APART]
 
 #include <raycloud/exec/stream.h>
 #include <raycloud/io/ray_cloud_file.h>
@@ -11,8 +13,8 @@
 #include <string>
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: tile_cloud CLOUD.ply RAYS OUT.ply\n");
+  if (argc != 4 && argc != 5) {
+    std::fprintf(stderr, "usage: tile_cloud CLOUD.ply RAYS OUT.ply [METRES APART]\n");
     return 2;
   }
   const auto wanted = static_cast<std::size_t>(std::strtoull(argv[2], nullptr, 10));
@@ -31,12 +33,13 @@ int main(int argc, char** argv) {
   info.ray_count = wanted;
   const auto sink = ray::create_ray_cloud(argv[3], info);
   constexpr std::size_t kChunk = 32768;
-  constexpr double kSpacing = 30.0;  // m; less than the scan's reach, so copies overlap
+  constexpr double kOverlapping = 30.0;  // m; less than the scan's reach
+  const double apart = argc > 4 ? std::strtod(argv[4], nullptr) : kOverlapping;
   ray::RawChunk raw;
   for (std::size_t done = 0, copy = 0; done < wanted; ++copy) {
     const auto middle = static_cast<double>(side - 1) / 2.0;
-    const Eigen::Vector3d offset(kSpacing * (static_cast<double>(copy % side) - middle),
-                                 kSpacing * (static_cast<double>(copy / side) - middle), 0.0);
+    const Eigen::Vector3d offset(apart * (static_cast<double>(copy % side) - middle),
+                                 apart * (static_cast<double>(copy / side) - middle), 0.0);
     ray::RayCloud tile = cloud;
     tile.transform(ray::translation_pose(offset));
     for (double& time : tile.times)
