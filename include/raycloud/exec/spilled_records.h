@@ -114,27 +114,30 @@ class SpilledRecords {
   /// `work(block, part)` for all blocks that have records of their own. May be called again.
   template <class Work>
   void visit(const Context& context, const Work& work) {
-    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
-      check_cancelled(context);
-      Block<Record> block = read(part);
+    each_block(context, work, [&](std::size_t part) {
       records_.rewind(part);
       own_.rewind(part);
-      if (has_own(block)) work(std::move(block), part);
-    }
+    });
   }
   /// As that, for the last time.
   template <class Work>
   void visit_and_drop(const Context& context, const Work& work) {
-    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
-      check_cancelled(context);
-      Block<Record> block = read(part);
+    each_block(context, work, [&](std::size_t part) {
       records_.drop(part);
       own_.drop(part);
-      if (has_own(block)) work(std::move(block), part);
-    }
+    });
   }
 
  private:
+  template <class Work, class WhenRead>
+  void each_block(const Context& context, const Work& work, const WhenRead& when_read) {
+    for (std::size_t part = 0; part < cuts_.parts(); ++part) {
+      check_cancelled(context);
+      Block<Record> block = read(part);
+      when_read(part);
+      if (has_own(block)) work(std::move(block), part);
+    }
+  }
   Block<Record> read(std::size_t part) {
     Block<Record> block;
     block.box = cuts_.box_of(part);

@@ -45,8 +45,9 @@ struct TransientCounts {
 /// those columns, with every bit. Reads `source` four times. The method is that of
 /// docs/algorithms/transients.md; neighbourhood shape. O(n log n): about 4 µs of one core a ray; 130 bytes a
 /// bounded ray. Where that is more than context.memory, blocks of space are worked on one after the other, in
-/// temporary files, in half as much time again: then 10 bytes an end are needed besides, and 4 bytes a ray
-/// where rays are taken out for what they passed. The result depends neither on threads nor on memory.
+/// temporary files, in half as much processor time again: then 10 bytes an end are needed besides, and 4
+/// bytes a ray where rays are taken out for what they passed. The result depends neither on threads nor on
+/// memory.
 ///
 /// Throws Error(usage) if `rule.rays` is not above 0, Error(no_data) if all bounded rays have one time,
 /// Error(out_of_range) for more than 4 billion of them. An empty cloud, or one of unbounded rays only, is
