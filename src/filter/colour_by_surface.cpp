@@ -2,6 +2,8 @@
 
 #include "surface_points.h"
 
+#include <raycloud/exec/fresh_memory.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,7 @@
 #include "surface_fit.h"
 #include "surface_points.h"
 
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/parallel.h>
 #include <raycloud/filter/smooth.h>
 
@@ -51,7 +52,7 @@ Move move_of(const LocalPlane& plane, double height, const PackedDirection& to_s
 std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block, double reach) {
   const PointTree tree(context, block.records);
   block.records = std::vector<SeenPoint>();
-  std::vector<LocalPlane> planes(tree.size());
+  auto planes = touched_vector<LocalPlane>(context, tree.size());
   const auto neighbours_of = [&](NeighbourSearch& search, std::size_t place) {
     const LocalPlane& plane = planes[place];
     return search.nearest_facing(place, SurfaceFit::kMost, kWider * static_cast<double>(plane.reach),
@@ -66,7 +67,9 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
           },
           {.radius = [&](std::size_t place) { return kWider * static_cast<double>(planes[place].reach); },
            .neighbours = neighbours_of});
-  std::vector<Move> moves(tree.size(), Move::Zero());
+  std::vector<Move> moves;
+  reserve_touched(context, moves, tree.size());
+  moves.resize(tree.size(), Move::Zero());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     SurfaceFit fit(tree, planes);
     std::size_t leaf_end = begin;

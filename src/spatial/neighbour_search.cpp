@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace ray {
 
@@ -18,8 +19,10 @@ class NeighbourSearch::Impl {
                                      const Eigen::Vector3d* side) {
     assert(count <= kMost && place < walk_.tree().size());
     if (count == 0) return {};
+    const bool is_new = go_to(place);
+    most_asked_ = std::max(most_asked_, count);
     // Who says how far it is, to about what was found last, knows.
-    if (go_to(place) && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
+    if (is_new && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
     std::optional<std::span<const Neighbour>> found;
     double within2 = reach * reach;
     if (around_.has(place)) {
@@ -31,7 +34,10 @@ class NeighbourSearch::Impl {
     }
     if (!found) {
       found = walk_.nearest(place, count, within2, side);
-      if (!around_.has(place) && found->size() == count) gather(kWide * furthest(*found));
+      if (!around_.has(place) && found->size() == count) {
+        const double furthest_found = furthest(*found);
+        if (!gather(kWide * furthest_found * further_asked(count))) gather(kLessWide * furthest_found);
+      }
     }
     last_ = *found;
     return last_;
@@ -60,7 +66,15 @@ class NeighbourSearch::Impl {
     if (!walk_.go_to(place)) return false;
     around_.forget();
     tries_ = kTries;
+    most_asked_before_ = std::exchange(most_asked_, 0);
     return true;
+  }
+
+  /// How much further off the most are that were asked for in the leaf before, and will be in this: points on
+  /// a surface grow as the square of the distance.
+  [[nodiscard]] double further_asked(std::size_t count) const {
+    const auto times = static_cast<double>(most_asked_before_) / static_cast<double>(count);
+    return std::sqrt(std::max(times, 1.0));
   }
 
   bool gather(double reach) {
@@ -83,6 +97,7 @@ class NeighbourSearch::Impl {
   // Most points of a leaf have their neighbours within so many times the distance of those of its first, or
   // of the reach of one that knows.
   static constexpr double kWide = 1.4;
+  static constexpr double kLessWide = 1.2;                    // where that is too many
   static constexpr double kWideOfReach = 1.3, kWider = 1.05;  // a little more, for the others
   static constexpr double kMuchWider = 2.0;
   static constexpr double kLess = 0.6;
@@ -91,7 +106,8 @@ class NeighbourSearch::Impl {
   TreeWalk walk_;
   LeafSurroundings around_;
   int tries_ = 0;
-  std::span<const Neighbour> last_;  // valid until the next search
+  std::size_t most_asked_ = 0, most_asked_before_ = 0;  // of a search, in the leaf and in the one before
+  std::span<const Neighbour> last_;                     // valid until the next search
 };
 
 NeighbourSearch::NeighbourSearch(const PointTree& tree) : tree_(tree), impl_(std::make_unique<Impl>(tree)) {}

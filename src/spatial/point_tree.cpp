@@ -1,4 +1,5 @@
 #include <raycloud/core/error.h>
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/space_cuts.h>
 #include <raycloud/spatial/point_tree.h>
@@ -65,9 +66,9 @@ class PointTree::Builder {
     fill_buckets();
     const std::size_t count = points_.size();
     for (std::vector<double>* column : {&tree_.x_, &tree_.y_, &tree_.z_})
-      column->resize(count + 7);  // leaves are read eight points at a time
-    tree_.to_sensor_.resize(count);
-    tree_.index_.resize(count);
+      *column = touched_vector<double>(context_, count + 7);  // leaves are read eight points at a time
+    tree_.to_sensor_ = touched_vector<PackedDirection>(context_, count);
+    tree_.index_ = touched_vector<std::uint32_t>(context_, count);
     below_.resize(buckets_);
     nodes_.resize(2 * buckets_);
     parallel_for(context_, buckets_, 1, [&](std::size_t begin, std::size_t end) {
@@ -105,7 +106,7 @@ class PointTree::Builder {
   void fill_buckets() {
     const std::size_t chunks = (points_.size() + kChunk - 1) / kChunk;
     std::vector<std::uint32_t> next(chunks * buckets_);
-    std::vector<std::uint32_t> bucket(buckets_ > 1 ? points_.size() : 0);
+    auto bucket = touched_vector<std::uint32_t>(context_, buckets_ > 1 ? points_.size() : 0);
     if (buckets_ > 1) {
       parallel_for(context_, points_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         std::uint32_t* counts = next.data() + begin / kChunk * buckets_;
@@ -126,7 +127,7 @@ class PointTree::Builder {
         sum += std::exchange(next[chunk * buckets_ + b], sum);
     }
     begins_[buckets_] = sum;
-    order_.resize(points_.size());
+    order_ = touched_vector<std::uint32_t>(context_, points_.size());
     parallel_for(context_, points_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
       std::uint32_t* places = next.data() + begin / kChunk * buckets_;
       for (std::size_t i = begin; i < end; ++i)
@@ -182,7 +183,7 @@ class PointTree::Builder {
       base[bucket] = total;
       total += below_[bucket].size();
     }
-    tree_.pairs_.resize(total / 2);
+    tree_.pairs_ = touched_vector<Pair>(context_, total / 2);
     parallel_for(context_, buckets_, 1, [&](std::size_t bucket, std::size_t) {
       const auto moved = [&](Node node) {
         if (node.parts != 0) node.parts += static_cast<std::uint32_t>(base[bucket]) - 2;

@@ -68,15 +68,19 @@ bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Ne
   });
 }
 
+/// How many of the nearest, of any side, tell where the sides are.
+std::size_t wide_count(const SurfelRule& rule) {
+  return std::min(3 * rule.neighbours, NeighbourSearch::kMost);
+}
+
 /// More of the nearest than a surfel has, and from these, nearly always, the nearest of any side.
 class WideNeighbours {
  public:
-  /// `nearest` is the surfel of as many as the rule says, of any side.
-  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, const Surfel& nearest)
-      : search_(search), place_(place), rule_(rule) {
-    found_ = search.nearest(place, std::min(3 * rule.neighbours, kMost), rule.reach);
-    std::copy(found_.begin(), found_.end(), all_.begin());
-    count_ = found_.size();
+  /// `found` are the nearest; `nearest` is the surfel of as many of them as the rule says, of any side.
+  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
+                 std::span<const Neighbour> found, const Surfel& nearest)
+      : search_(search), place_(place), rule_(rule), found_(found), count_(found.size()) {
+    std::copy(found.begin(), found.end(), all_.begin());
     for (std::size_t i = 0; i < count_; ++i) {
       const PackedDirection& d = search.tree().to_sensor(all_[i].place);
       const auto at = static_cast<Eigen::Index>(i);
@@ -89,14 +93,13 @@ class WideNeighbours {
 
   /// All, as long as they were the last that were searched; none after that.
   [[nodiscard]] std::span<const Neighbour> found() const { return found_; }
-  [[nodiscard]] Surfel surfel() const { return surfel_of(search_.tree(), place_, {all_.data(), count_}); }
 
   [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
     const std::uint64_t facing = bits_facing(side);
     for (std::size_t i = 0; i < known_count_; ++i)
       if (known_[i].facing == facing) return known_[i].surfel;
     const auto count = static_cast<std::size_t>(std::popcount(facing));
-    const bool are_all = count_ < std::min(3 * rule_.neighbours, kMost);
+    const bool are_all = count_ < wide_count(rule_);
     if (count < rule_.neighbours && !are_all) {
       found_ = {};
       return surfel_of(search_.tree(), place_,
@@ -179,14 +182,24 @@ class WideNeighbours {
 /// where the two sides of a wall are no further apart than their points, their normal says where the sides
 /// are, else the ray; but the first normal does, if that leaves a clearly flatter surface.
 SurfelOf surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
-                         const Surfel& nearest, bool from_behind) {
+                         const SurfelOf& nearest, bool from_behind) {
   constexpr double kFlatEnough = 0.4;  // for that many
   constexpr double kClearly = 0.25;
-  WideNeighbours neighbours(search, place, rule, nearest);
-  const Surfel wide = neighbours.surfel();
+  const PointTree& tree = search.tree();
+  std::array<PackedDirection, NeighbourSearch::kMost> to_sensors;  // for the next search ends what was found
+  const std::span<PackedDirection> nearest_to_sensors(to_sensors.data(), nearest.nearest.size());
+  std::transform(nearest.nearest.begin(), nearest.nearest.end(), to_sensors.begin(),
+                 [&](const Neighbour& neighbour) { return tree.to_sensor(neighbour.place); });
+  const std::span<const Neighbour> found = search.nearest(place, wide_count(rule), rule.reach);
+  const Surfel wide = surfel_of(tree, place, found);
   const Eigen::Vector3d side =
-      is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(search.tree().to_sensor(place));
-  const Surfel first = from_behind ? neighbours.surfel_of_side(nearest.normal) : nearest;
+      is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(tree.to_sensor(place));
+  // The nearest of a side are the nearest, if those are of it.
+  if (!from_behind && std::all_of(nearest_to_sensors.begin(), nearest_to_sensors.end(),
+                                  [&](const PackedDirection& d) { return is_seen_from(side, d); }))
+    return {nearest.surfel, found};
+  WideNeighbours neighbours(search, place, rule, found, nearest.surfel);
+  const Surfel first = from_behind ? neighbours.surfel_of_side(nearest.surfel.normal) : nearest.surfel;
   const Surfel other = neighbours.surfel_of_side(side);
   const bool first_is_flatter =
       first.variances[0] * other.variances[1] < kClearly * other.variances[0] * first.variances[1];
@@ -224,7 +237,7 @@ SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const Su
     const Surfel& nearest = result.surfel;
     const bool from_behind = any_from_behind(tree, nearest.normal, result.nearest);
     if (!is_flat(nearest) && !all_seen_alike(tree, place, result.nearest))
-      result = surfel_of_thick(search, place, rule, nearest, from_behind);
+      result = surfel_of_thick(search, place, rule, result, from_behind);
     else if (is_flat(nearest) && from_behind)
       result = {of_side(of_side(nearest.normal).normal), {}};
   }

@@ -4,6 +4,7 @@
 /// one block, a larger one is cut into several, which lie in temporary files until it is their turn.
 
 #include <raycloud/exec/end_sample.h>
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/spilled_records.h>
 #include <raycloud/exec/stream.h>
 
@@ -44,7 +45,7 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
   Block<Record> whole;
   const std::size_t fitting = memory / needs.bytes_per_record;
   if (source.info().ray_count)
-    whole.records.reserve(std::min<std::uint64_t>(*source.info().ray_count, fitting));
+    reserve_touched(context, whole.records, std::min<std::uint64_t>(*source.info().ray_count, fitting));
   stream(context, source, nullptr, extract_chunk,
          [&](const RayCloud& rays, const std::vector<Record>& records) {
            sampler.add(rays, records.size());
