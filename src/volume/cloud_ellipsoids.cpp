@@ -1,7 +1,6 @@
 #include "cloud_ellipsoids.h"
 
 #include "mix_bits.h"
-#include "read_ends.h"
 
 #include <raycloud/exec/parallel.h>
 #include <raycloud/spatial/surfel.h>
@@ -79,7 +78,10 @@ std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, doub
 }
 
 CloudEllipsoids cloud_ellipsoids(const Context& context, RaySource& source) {
-  ReadEnds ends = read_ends(context, source, ~std::size_t{0});
+  return cloud_ellipsoids(context, read_ends(context, source, ~std::size_t{0}));
+}
+
+CloudEllipsoids cloud_ellipsoids(const Context& context, ReadEnds&& ends) {
   EllipsoidMaker maker(context, std::move(ends.points));
   RangeNoise noise(ends.sample.bounded, ends.reach);
   noise.add(context, maker.points(), {});

@@ -1,6 +1,8 @@
 #pragma once
 /// The ellipsoids around the ends of a cloud.
 
+#include "read_ends.h"
+
 #include <raycloud/core/ray_stream.h>
 #include <raycloud/exec/context.h>
 #include <raycloud/spatial/point_tree.h>
@@ -59,5 +61,7 @@ struct CloudEllipsoids {
 };
 /// Those of a whole cloud. Reads `source` once and rewinds it.
 [[nodiscard]] CloudEllipsoids cloud_ellipsoids(const Context& context, RaySource& source);
+/// Those of a cloud that was read, with its points.
+[[nodiscard]] CloudEllipsoids cloud_ellipsoids(const Context& context, ReadEnds&& ends);
 
 }  // namespace ray

@@ -34,6 +34,8 @@ std::size_t parts_for(const Context& context, const ReadEnds& ends, std::size_t 
   return std::min(2 * (ends.sample.bounded * bytes_per_point / memory_budget(context) + 1), kMostParts);
 }
 
+}  // namespace
+
 Eigen::AlignedBox3d box_of(const Ellipsoid& ellipsoid) {
   constexpr double kRounded = 1e-9, kLeast = 1e-6;  // of the distance to the origin; m
   const Eigen::Array3d reach =
@@ -42,8 +44,6 @@ Eigen::AlignedBox3d box_of(const Ellipsoid& ellipsoid) {
   return {Eigen::Vector3d(ellipsoid.centre.array() - reach),
           Eigen::Vector3d(ellipsoid.centre.array() + reach)};
 }
-
-}  // namespace
 
 EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, const ReadEnds& ends,
                                  std::size_t bytes_per_point)
