@@ -26,6 +26,7 @@ class WholeConflicts {
     std::vector<std::uint32_t> passed = rule_.passed_slots(*tree_, rule_.rays_of(other));
     if (passed.empty()) return;
     const std::vector<Evidence> evidence = evidence_of(std::move(passed), other);
+    if (evidence.empty()) return;
     const Sides& sides = rule_.sides(other);
     if (sides.ends) {
       const std::vector<float> ends =
@@ -72,15 +73,25 @@ class WholeConflicts {
   }
 
  private:
+  /// By slot; empty if nothing contradicts.
   std::vector<Evidence> evidence_of(std::vector<std::uint32_t> passed, std::size_t other) const {
-    const SomeEllipsoids some = some_of(context_, *tree_, std::move(passed));
-    const std::vector<Encounters> of_own = rule_.met_by(*some.tree, rule_.rays_of(question_.own));
-    const std::vector<Encounters> of_other = rule_.met_by(*some.tree, rule_.rays_of(other));
-    std::vector<Evidence> evidence(tree_->size());
-    for (std::size_t i = 0; i < some.slots.size(); ++i) {
-      const std::uint32_t slot = some.tree->slot(i);
-      evidence[some.slots[i]] = rule_.evidence(of_own[slot], of_other[slot]);
+    std::vector<std::uint32_t> slots;
+    std::vector<Encounters> of_other;
+    {
+      const SomeEllipsoids some = some_of(context_, *tree_, std::move(passed));
+      const std::vector<Encounters> met = rule_.met_by(*some.tree, rule_.rays_of(other));
+      for (std::size_t i = 0; i < some.slots.size(); ++i)
+        if (const Encounters& of_slot = met[some.tree->slot(i)]; rule_.may_contradict(of_slot)) {
+          slots.push_back(some.slots[i]);
+          of_other.push_back(of_slot);
+        }
     }
+    if (slots.empty()) return {};
+    const SomeEllipsoids some = some_of(context_, *tree_, std::move(slots));
+    const std::vector<Encounters> of_own = rule_.met_by(*some.tree, rule_.rays_of(question_.own));
+    std::vector<Evidence> evidence(tree_->size());
+    for (std::size_t i = 0; i < some.slots.size(); ++i)
+      evidence[some.slots[i]] = rule_.evidence(of_own[some.tree->slot(i)], of_other[i]);
     return evidence;
   }
 

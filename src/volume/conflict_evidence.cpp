@@ -55,6 +55,7 @@ std::uint16_t counter(double count) {
 ConflictRule::ConflictRule(const Context& context, const ConflictQuestion& question, double range_noise)
     : context_(context),
       question_(question),
+      fewest_(question.rule.paper ? 1 : 2),
       counting_(count_rule(question.rule.paper, range_noise)),
       times_(fine_time(question.clouds)) {
   for (std::size_t other = 0; other < question.clouds.size(); ++other)
@@ -96,14 +97,13 @@ MeetingRays ConflictRule::rays_of(std::size_t cloud, CrossingRays& rays, std::si
 
 std::vector<std::uint32_t> ConflictRule::passed_slots(const EllipsoidTree& tree,
                                                       const MeetingRays& rays) const {
-  const int fewest = paper() ? 1 : 2;
   std::vector<std::uint8_t> passes(tree.size());
   rays.each([&](const RayCloud& piece, std::span<const std::uint32_t>) {
     count_passes(tree, piece, counting_.guard, passes);
   });
   std::vector<std::uint32_t> slots;
   for (std::uint32_t slot = 0; slot < passes.size(); ++slot)
-    if (passes[slot] >= fewest) slots.push_back(slot);
+    if (passes[slot] >= fewest_) slots.push_back(slot);
   return slots;
 }
 
@@ -116,7 +116,6 @@ std::vector<Encounters> ConflictRule::met_by(const EllipsoidTree& tree, const Me
 }
 
 Evidence ConflictRule::evidence(const Encounters& own, const Encounters& other) const {
-  constexpr double kOfEachHit = 2.0;
   Evidence evidence;
   if (own.hits == 0 || other.passes == 0) return evidence;
   const CloudMerge merge = question_.rule.merge;
@@ -127,7 +126,8 @@ Evidence ConflictRule::evidence(const Encounters& own, const Encounters& other) 
   evidence.within = counter(own.passes);
   const double opacity = static_cast<double>(opacity_while_there(evidence));
   const std::size_t run = order < 0 ? 0 : Evidence::kRuns - 1;
-  evidence.passes[run] = counter(std::floor(other.passes - kOfEachHit * other.hits / opacity));
+  evidence.passes[run] =
+      counter(std::floor(other.passes - static_cast<double>(kOfEachHit) * other.hits / opacity));
   evidence.looks[run] = other.looks;
   return evidence;
 }

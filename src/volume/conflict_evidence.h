@@ -43,14 +43,22 @@ class ConflictRule {
   /// The slots of the ellipsoids that enough of the rays pass to change a score.
   [[nodiscard]] std::vector<std::uint32_t> passed_slots(const EllipsoidTree& tree,
                                                         const MeetingRays& rays) const;
+  /// Whether what the other cloud met can change a score, whatever its own did: as opaque as it may be,
+  /// enough passes are left when twice the hits are taken off.
+  [[nodiscard]] bool may_contradict(const Encounters& other) const {
+    return other.passes >= fewest_ + kOfEachHit * other.hits;
+  }
   /// By slot.
   [[nodiscard]] std::vector<Encounters> met_by(const EllipsoidTree& tree, const MeetingRays& rays) const;
   /// As if the other cloud's passes were one run before or after the hits of its own.
   [[nodiscard]] Evidence evidence(const Encounters& own, const Encounters& other) const;
 
  private:
+  static constexpr std::uint64_t kOfEachHit = 2;
+
   const Context& context_;
   const ConflictQuestion& question_;
+  std::uint64_t fewest_;  ///< passes that change a score
   CountRule counting_;
   FineTime times_;
   std::vector<Sides> sides_;

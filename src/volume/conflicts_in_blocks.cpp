@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kAtOnce = 1 << 14;
 
-/// Of an ellipsoid of a block that rays of another cloud passed: how they met it.
+/// Of an ellipsoid of a block whose passes may contradict it: how the rays of another cloud met it.
 struct PassedEllipsoid {
   std::uint32_t number = 0;
   Encounters other;
@@ -101,7 +101,7 @@ class ConflictBlocks {
     return rays;
   }
 
-  /// Returns the box of those that were passed.
+  /// Returns the box of those whose passes may contradict them.
   Eigen::AlignedBox3d find_passed(std::size_t part, const MeetingRays& rays,
                                   SpilledRows<PassedEllipsoid>& passed) {
     const std::unique_ptr<EllipsoidTree> tree = blocks_.tree(context_, part);
@@ -111,10 +111,12 @@ class ConflictBlocks {
     std::vector<std::uint32_t> numbers(tree->size());
     for (std::uint32_t number = 0; number < numbers.size(); ++number)
       numbers[tree->slot(number)] = number;
-    std::vector<PassedEllipsoid> rows(some.slots.size());
+    std::vector<PassedEllipsoid> rows;
     Eigen::AlignedBox3d box;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i] = {numbers[some.slots[i]], met[some.tree->slot(i)]};
+    for (std::size_t i = 0; i < some.slots.size(); ++i) {
+      const Encounters& of_slot = met[some.tree->slot(i)];
+      if (!rule_.may_contradict(of_slot)) continue;
+      rows.push_back({numbers[some.slots[i]], of_slot});
       box.extend(box_of(tree->at_slot(some.slots[i])));
     }
     passed.append(part, rows);

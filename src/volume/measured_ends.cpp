@@ -68,11 +68,13 @@ MeasuredEnds::MeasuredEnds(const Context& context, const TwoClouds& clouds, std:
     measure_in_blocks(context, clouds, ends, distance);
     return;
   }
-  const std::array<PointTree, 2> trees{PointTree(context, ends[0].points),
-                                       PointTree(context, ends[1].points)};
+  std::array<std::unique_ptr<PointTree>, 2> trees;
   for (std::size_t own = 0; own < 2; ++own) {
+    trees[own] = std::make_unique<PointTree>(context, ends[own].points);
     ends[own].points = std::vector<SeenPoint>();
-    whole_[own] = measured(context, trees[own], trees[1 - own], {}, area_reach(ends[own]), distance);
+  }
+  for (std::size_t own = 0; own < 2; ++own) {
+    whole_[own] = measured(context, *trees[own], *trees[1 - own], {}, area_reach(ends[own]), distance);
     all_within_[own] = are_all_within(whole_[own]);
   }
 }
