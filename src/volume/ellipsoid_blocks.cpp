@@ -58,10 +58,7 @@ EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, cons
       [&](const RayCloud&, const blocks::Copies<SeenPoint>& copies) { near.add(copies); });
   source.rewind();
   RangeNoise noise(ends.sample.bounded, ends.reach);
-  near.visit(context, [&](Block<SeenPoint>&& block, std::size_t) {
-    const PointTree points(context, block.records);
-    noise.add(context, points, block.own);
-  });
+  near.visit(context, [&](Block<SeenPoint>&& block, std::size_t) { noise.add(context, block); });
   range_noise_ = noise.value();
   near.visit_and_drop(context, [&](Block<SeenPoint>&& block, std::size_t part) {
     make(context, std::move(block), part, ends.reach);

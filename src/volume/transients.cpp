@@ -32,7 +32,7 @@ TransientCounts split_whole(const Context& context, RaySource& source, RaySink& 
                             ReadEnds&& ends, JudgeRule rule) {
   EllipsoidMaker maker(context, std::move(ends.points));
   RangeNoise noise(ends.sample.bounded, ends.reach);
-  noise.add(context, maker.points(), {});
+  noise.add(context, maker.points());
   rule.counting = count_rule(rule.transients.paper, noise.value());
   const std::unique_ptr<EllipsoidTree> tree =
       EllipsoidMaker(std::move(maker)).make(context, ends.reach, noise.value());
