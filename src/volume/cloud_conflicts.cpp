@@ -30,14 +30,14 @@ class WholeConflicts {
     const Sides& sides = rule_.sides(other);
     if (sides.ends) {
       const std::vector<float> ends =
-          transience_scores(context_, *tree_, evidence, *sides.ends, rule_.paper());
+          transience_scores(context_, *tree_, evidence, *sides.ends, kBetweenClouds, rule_.paper());
       ends_.resize(ends.size());
       for (std::size_t i = 0; i < ends.size(); ++i)
         ends_[i] = std::max(ends_[i], ends[i]);
     }
     if (sides.passes) {
       const std::vector<float> passes =
-          transience_scores(context_, *tree_, evidence, *sides.passes, rule_.paper());
+          transience_scores(context_, *tree_, evidence, *sides.passes, kBetweenClouds, rule_.paper());
       std::vector<PassConflict> conflicts;
       for (std::uint32_t slot = 0; slot < passes.size(); ++slot)
         add_pass_conflict(slot, passes[slot], evidence[slot], rule_.paper(), conflicts);

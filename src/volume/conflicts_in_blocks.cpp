@@ -143,7 +143,7 @@ class ConflictBlocks {
     Scores(ConflictBlocks& of, SpilledRows<KnownEvidence>& evidence, const Contradiction& which)
         : of_(of), evidence_(evidence), which_(which) {
       if (of.rule_.paper()) return;
-      regions_ = std::make_unique<BlockRegions>(of.blocks_);
+      regions_ = std::make_unique<BlockRegions>(of.blocks_, kBetweenClouds);
       of.each_part([&](std::size_t part) {
         if (evidence.size(part) > 0) regions_->see(part, seeds(part), of.blocks_.load(part));
       });

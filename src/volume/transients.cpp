@@ -39,7 +39,7 @@ TransientCounts split_whole(const Context& context, RaySource& source, RaySink& 
   const std::vector<Evidence> evidence = count_evidence(context, source, source, *tree, rule);
   const Sides sides = sides_of(rule.transients.merge);
   const auto scores_of = [&](const std::optional<Contradiction>& which) {
-    return which ? transience_scores(context, *tree, evidence, *which, rule.transients.paper)
+    return which ? transience_scores(context, *tree, evidence, *which, kWithinCloud, rule.transients.paper)
                  : std::vector<float>();
   };
   const std::vector<float> of_ends = scores_of(sides.ends);
