@@ -36,7 +36,7 @@ struct TellConflicts {
 /// twice the hits that the other cloud has are taken off that: what both saw is still there. Evidence of
 /// neighbours is brought together as within one cloud (transient_regions.h).
 ///
-/// Reads and rewinds all clouds, more than once. About 3.5 µs of one core a ray; 140 bytes a bounded ray of
+/// Reads and rewinds all clouds, more than once. About 3 µs of one core a ray; 140 bytes a bounded ray of
 /// the own cloud, and where that is more than context.memory it is worked on in blocks of space, in temporary
 /// files: 10 bytes an end then, besides, and half as much time again. The result depends neither on threads
 /// nor on memory.

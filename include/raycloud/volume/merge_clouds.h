@@ -39,7 +39,7 @@ struct MergeCounts {
 /// with most of them has. Rays that two clouds both have contradict neither.
 ///
 /// All sources have the same columns, and there is at least one. Neighbourhood shape, in memory: O(n log n)
-/// for two clouds, about 4 µs of one core a ray; each further cloud is walked by the rays of all others. 140
+/// for two clouds, about 3 µs of one core a ray; each further cloud is walked by the rays of all others. 140
 /// bytes for each bounded ray of the largest cloud; where that is more than context.memory, blocks of its
 /// space are worked on one after the other, in temporary files, in half as much time again. And 8 bytes for
 /// each ray of all clouds. The method is that of docs/algorithms/merging.md. The result depends neither on
