@@ -182,6 +182,25 @@ RC_GTEST_PROP(BlockRegions, knowWhatTheWholeCloudDoesForAnyNumber, (std::uint64_
               scored_whole(cloud, steps));
 }
 
+TEST(TransientRegions, spreadFurtherBetweenCloudsWhereSolid) {
+  const RayCloud cloud = wire(0.03, 400);
+  MemorySource source(cloud, 100);
+  const CloudEllipsoids whole = cloud_ellipsoids({}, source);
+  const auto reached = [&](std::uint8_t solid, const SpreadSteps& steps) {
+    const std::vector<float> scores = transient_regions(
+        {}, *whole.tree,
+        [&](std::size_t slot) {
+          const bool sure = whole.tree->at_slot(static_cast<std::uint32_t>(slot)).centre.x() < 1.0;
+          return RegionSeed{.own = sure ? 30.0F : 0.0F, .hint = 6.0F, .opaque = 0, .solid = solid};
+        },
+        steps);
+    return std::count_if(scores.begin(), scores.end(), [](float score) { return score > 0.0F; });
+  };
+  EXPECT_GT(reached(1, kBetweenClouds), reached(1, kWithinCloud) + 20);
+  EXPECT_EQ(reached(0, kBetweenClouds), reached(0, kWithinCloud));
+  EXPECT_EQ(reached(1, kWithinCloud), reached(0, kWithinCloud));
+}
+
 /// m, of the nearest point of a line from a box: the distance is convex along it.
 double distance_to(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& start, const Eigen::Vector3d& end) {
   double from = 0.0, to = 1.0;
