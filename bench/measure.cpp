@@ -53,7 +53,11 @@ Run run(const std::string& command) {
     std::fprintf(stderr, "failed: %s\n", command.c_str());
     std::exit(1);
   }
-  return {seconds, static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6};
+  const auto spent = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return {seconds, spent(usage.ru_utime) + spent(usage.ru_stime),
+          static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6};
 }
 
 Result time_alone(const Subject& subject, int runs) {

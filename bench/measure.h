@@ -10,7 +10,8 @@ namespace bench {
 
 struct Run {
   double seconds = 0.0;
-  double peak_megabytes = 0.0;  ///< largest resident size of the process, 10^6 bytes
+  double processor_seconds = 0.0;  ///< of all cores together, for itself and for the system
+  double peak_megabytes = 0.0;     ///< largest resident size of the process, 10^6 bytes
 };
 
 /// Runs a shell command once, its output thrown away. Ends the program with a message if the command fails.

@@ -72,7 +72,9 @@ starts to rounding. The column `clipped` goes away with the last piece.)",
         "CLOUD1_differences.ply, unless the result takes the place of one of the clouds",
     .memory =
         "Less than 200 MB for any number of clouds of any size. `--join` takes 200 bytes for each piece "
-        "besides. Merging takes up to 130 bytes a ray, with BASE all 50, whatever --memory allows.",
+        "besides. Merging takes 140 bytes for each ray of the largest cloud, or if that is more than --memory "
+        "allows, that and 40 to 80 MB, in temporary files; and 8 bytes for each ray of all clouds, with BASE all "
+        "5.",
     .see_also = {"raysplit", "raytransients", "rayrestore"}};
 
 std::string number_of(std::uint64_t count, const std::string& noun) {

@@ -56,7 +56,9 @@ with the keys `same`, `removed`, `added` and `unobserved`, each with `rays`, `ar
                  .fallback = "10",
                  .advanced = true}},
     .writes = "CLOUD1_diff.ply, after the name of the first cloud, and a table to standard output",
-    .memory = "140 bytes for each ray of the larger cloud, whatever --memory allows.",
+    .memory =
+        "140 bytes for each ray of the larger cloud and 20 for each of both, or if that is more than --memory allows, "
+        "that and 40 to 80 MB, in temporary files, and 6 bytes for each ray of both.",
     .see_also = {"raycombine", "raytransients", "rayinfo"}};
 
 bool same_place(const path& a, const path& b) {

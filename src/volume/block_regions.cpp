@@ -12,7 +12,8 @@ constexpr std::size_t kMembersAtOnce = 256;
 
 }  // namespace
 
-BlockRegions::BlockRegions(EllipsoidBlocks& blocks) : blocks_(blocks), states_(blocks.cells().size()) {}
+BlockRegions::BlockRegions(EllipsoidBlocks& blocks, const SpreadSteps& steps)
+    : blocks_(blocks), steps_(steps), states_(blocks.cells().size()) {}
 
 void BlockRegions::see(std::size_t part, std::span<const RegionSeed> seeds,
                        std::span<const PackedEllipsoid> ellipsoids) {
@@ -23,14 +24,14 @@ void BlockRegions::see(std::size_t part, std::span<const RegionSeed> seeds,
     state.awake.extend(centre_of(ellipsoids[i]));
     state.awake_semi = std::max(state.awake_semi, RegionCells::semi_axis_within(unpacked(ellipsoids[i])));
     state.has_evidence = state.has_evidence || seeds[i].own > 0.0F;
-    state.is_source = state.is_source || is_source(seeds[i]);
+    state.is_source = state.is_source || is_source(seeds[i], steps_);
   }
 }
 
 void BlockRegions::judge(const Context& context,
                          const std::function<std::vector<RegionSeed>(std::size_t part)>& seeds_of) {
   const std::size_t memory = memory_budget(context);
-  groups_ = blocks_.cells().groups(states_, memory / 4 * 3 / kMemberBytes);
+  groups_ = blocks_.cells().groups(states_, steps_.all(), memory / 4 * 3 / kMemberBytes);
   states_ = {};
   if (groups_.count == 0) return;
   members_ = std::make_unique<SpilledRows<Member>>(groups_.count, memory / 64);
@@ -74,8 +75,8 @@ void BlockRegions::judge_group(const Context& context, std::size_t group) {
     seeds[tree->slot(i)] = members[i].seed;
     if (members[i].owned != 0) owned.push_back(tree->slot(i));
   }
-  const std::vector<float> of_slots =
-      transient_regions(context, *tree, [&](std::size_t slot) { return seeds[slot]; });
+  const std::vector<float> of_slots = transient_regions(
+      context, *tree, [&](std::size_t slot) { return seeds[slot]; }, steps_);
   std::vector<float> scores(owned.size());
   std::transform(owned.begin(), owned.end(), scores.begin(),
                  [&](std::uint32_t slot) { return of_slots[slot]; });

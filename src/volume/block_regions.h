@@ -19,7 +19,7 @@ namespace ray {
 /// memory holds; the rest has 0. No rays are needed.
 class BlockRegions {
  public:
-  explicit BlockRegions(EllipsoidBlocks& blocks);
+  BlockRegions(EllipsoidBlocks& blocks, const SpreadSteps& steps);
 
   /// Of a block: where something is awake. Called for each that has ellipsoids, before judge.
   void see(std::size_t part, std::span<const RegionSeed> seeds, std::span<const PackedEllipsoid> ellipsoids);
@@ -41,6 +41,7 @@ class BlockRegions {
   void judge_group(const Context& context, std::size_t group);
 
   EllipsoidBlocks& blocks_;
+  SpreadSteps steps_;
   std::vector<CellState> states_;
   CellGroups groups_;
   std::unique_ptr<SpilledRows<Member>> members_;  ///< by group, in the order of blocks

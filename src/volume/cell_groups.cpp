@@ -10,8 +10,13 @@ namespace ray {
 /// Divides cells among groups until each fits.
 class CellGrouping {
  public:
-  CellGrouping(const RegionCells& cells, std::span<const CellState> states, std::size_t most)
-      : cells_(cells), states_(states), most_(most), stamps_(cells.size()), kinds_(cells.size()) {
+  CellGrouping(const RegionCells& cells, std::span<const CellState> states, int spreads, std::size_t most)
+      : cells_(cells),
+        states_(states),
+        spreads_(spreads),
+        most_(most),
+        stamps_(cells.size()),
+        kinds_(cells.size()) {
     groups_.owner.assign(cells.size(), CellGroups::kNone);
     groups_.needed_by.resize(cells.size());
   }
@@ -85,7 +90,7 @@ class CellGrouping {
     for (std::uint32_t i = 0; i < states_.size(); ++i)
       if (states_[i].is_source) sources.push_back(i);
     Region spread(*this, sources);
-    for (int step = 0; step < kSpreads; ++step)
+    for (int step = 0; step < spreads_; ++step)
       spread.grow([this](std::uint32_t a, std::uint32_t b) { return are_awake_together(a, b); });
     for (const std::uint32_t cell : spread.cells())
       kinds_[cell].spreads = true;
@@ -105,7 +110,7 @@ class CellGrouping {
       return holds(other, cell) || (kinds_[other].scores && holds_awake(cell, other));
     });
     region.from_all();
-    for (int step = 0; step < kSpreads; ++step)
+    for (int step = 0; step < spreads_; ++step)
       region.grow([this](std::uint32_t cell, std::uint32_t other) {
         return kinds_[cell].spreads && kinds_[other].spreads && are_awake_together(cell, other);
       });
@@ -152,6 +157,7 @@ class CellGrouping {
 
   const RegionCells& cells_;
   std::span<const CellState> states_;
+  int spreads_;
   std::size_t most_;
   std::vector<std::uint32_t> stamps_;  ///< by cell: the last region that it was in
   std::uint32_t stamp_ = 0;
@@ -159,8 +165,8 @@ class CellGrouping {
   CellGroups groups_;
 };
 
-CellGroups RegionCells::groups(std::span<const CellState> states, std::size_t most) const {
-  return CellGrouping(*this, states, most).run();
+CellGroups RegionCells::groups(std::span<const CellState> states, int spreads, std::size_t most) const {
+  return CellGrouping(*this, states, spreads, most).run();
 }
 
 }  // namespace ray

@@ -1,5 +1,5 @@
-#include "contradicted_ends.h"
-#include "end_distances.h"
+#include "cloud_conflicts.h"
+#include "measured_ends.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/spatial/voxel_set.h>
@@ -15,35 +15,67 @@ std::size_t number_of(Difference difference) {
   return static_cast<std::size_t>(difference);
 }
 
-/// The class of each end of one cloud; `scores` are those of contradicted_ends.
-std::vector<Difference> judge(std::span<const std::uint8_t> within, std::span<const float> scores,
-                              double rays, Difference changed) {
-  std::vector<Difference> differences(within.size());
-  for (std::size_t i = 0; i < within.size(); ++i) {
-    const bool gone = !scores.empty() && static_cast<double>(scores[i]) > rays;
-    differences[i] = within[i] != 0 ? Difference::same : gone ? changed : Difference::unobserved;
-  }
-  return differences;
-}
-
 using CubesOfEach = std::array<VoxelSet, kDifferences>;
 
-/// Adds the cubes of the ends of a cloud. Reads and rewinds it.
-void add_cubes(const Context& context, RaySource& source, std::span<const Difference> differences,
-               Metres width, CubesOfEach& cubes) {
-  std::array<std::vector<Eigen::Vector3d>, kDifferences> points;
-  std::size_t next = 0;
-  stream(
-      context, source, nullptr, [](const RayCloud&) { return 0; },
-      [&](const RayCloud& rays, int) {
-        for (std::size_t i = 0; i < rays.size(); ++i)
-          if (rays.bounded[i] != 0) points[number_of(differences[next++])].push_back(rays.ends[i]);
-        for (std::size_t kind = 0; kind < kDifferences; ++kind) {
-          static_cast<void>(cubes[kind].insert(voxel_keys(points[kind], width)));
-          points[kind].clear();
-        }
-      });
-  source.rewind();
+/// Judges the ends of one cloud as it is read, and adds up what they are.
+class EndJudge {
+ public:
+  /// `gone` tells which were seen through: by bounded ray, or empty if none was.
+  EndJudge(CloudComparison& comparison, std::size_t cloud, std::vector<std::uint8_t> gone)
+      : comparison_(comparison), cloud_(cloud), gone_(std::move(gone)) {}
+
+  /// The bounded rays of the next chunk have these measures.
+  void see(const RayCloud& rays, std::span<const EndMeasure> measures) {
+    ComparedEnds& ends = comparison_.clouds[cloud_];
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.bounded[i] == 0) continue;
+      const EndMeasure& measure = measures[next++];
+      const Difference difference = judge(measure, ends.differences.size());
+      ends.differences.push_back(difference);
+      ends.distances.push_back(measure.distance);
+      points_[number_of(difference)].push_back(rays.ends[i]);
+      DifferenceTotals& totals = comparison_.totals[number_of(difference)];
+      ++totals.rays;
+      const bool in_both = difference == Difference::same;
+      totals.area += (in_both ? 0.5 : 1.0) * static_cast<double>(measure.area);
+    }
+  }
+  /// Adds the cubes of the ends since the last call.
+  void add_cubes(CubesOfEach& cubes) {
+    for (std::size_t kind = 0; kind < kDifferences; ++kind) {
+      static_cast<void>(cubes[kind].insert(voxel_keys(points_[kind], {comparison_.distance})));
+      points_[kind].clear();
+    }
+  }
+
+ private:
+  [[nodiscard]] Difference judge(const EndMeasure& measure, std::size_t end) const {
+    if (measure.within != 0) return Difference::same;
+    if (gone_.empty() || gone_[end] == 0) return Difference::unobserved;
+    return cloud_ == 0 ? Difference::removed : Difference::added;
+  }
+
+  CloudComparison& comparison_;
+  std::size_t cloud_;
+  std::vector<std::uint8_t> gone_;
+  std::array<std::vector<Eigen::Vector3d>, kDifferences> points_;
+};
+
+/// Of each bounded ray of a cloud, 1 if merging would take it out; empty if it would take out none.
+std::vector<std::uint8_t> seen_through(const Context& context, std::span<const NumberedCloud> clouds,
+                                       std::size_t own, double rays) {
+  std::vector<std::uint8_t> gone;
+  find_conflicts(
+      context,
+      {.clouds = clouds, .own = own, .rule = {.merge = CloudMerge::min, .rays = rays}, .is_shared = {}},
+      {.ends =
+           [&](std::span<const std::uint32_t>, std::span<const float> scores) {
+             for (const float score : scores)
+               gone.push_back(static_cast<double>(score) > rays ? 1 : 0);
+           },
+       .passes = {}});
+  return gone;
 }
 
 double share_of_same(double same, double changed) {
@@ -76,38 +108,35 @@ CloudComparison compare_clouds(const Context& context, RaySource& first, RaySour
     throw Error(ErrorCode::usage, "the distance must not be below 0");
   if (!(rule.rays > 0.0) || !std::isfinite(rule.rays))
     throw Error(ErrorCode::usage, "the number of rays must be above 0");
-  const std::array<RaySource*, 2> sources{&first, &second};
+  constexpr std::uint64_t kMostRows = 0xffffffff;
+  const TwoClouds sources{&first, &second};
   CloudComparison comparison;
-  std::array<TimedCloud, 2> timed;
-  std::array<std::vector<std::uint8_t>, 2> within;
-  std::array<std::vector<float>, 2> areas;
-  {
-    const std::array<CloudEnds, 2> ends{cloud_ends(context, first), cloud_ends(context, second)};
-    comparison.distance =
-        rule.distance > 0.0 ? rule.distance : usual_distance(ends[0].spacing, ends[1].spacing);
-    for (std::size_t own = 0; own < 2; ++own) {
-      EndDistances distances = distances_to(context, ends[own].tree, ends[1 - own].tree, comparison.distance);
-      within[own] = std::move(distances.within);
-      comparison.clouds[own].distances = std::move(distances.distances);
-      areas[own] = areas_of(context, ends[own], comparison.distance);
-      timed[own] = {sources[own], ends[own].first_time, ends[own].last_time};
-      comparison.dropped += ends[own].dropped;
-    }
+  std::array<NumberedCloud, 2> clouds;
+  std::array<ReadEnds, 2> ends;
+  for (std::size_t own = 0; own < 2; ++own) {
+    ends[own] = read_ends(context, *sources[own], memory_budget(context) / kMeasuredEndBytes);
+    clouds[own] = {.source = sources[own],
+                   .first = own == 0 ? 0 : ends[0].rows,
+                   .times = {ends[own].first_time, ends[own].last_time}};
+    comparison.dropped += ends[own].dropped;
   }
+  if (ends[0].rows + ends[1].rows > kMostRows)
+    throw Error(ErrorCode::out_of_range, "more than 4 billion rays");
+  comparison.distance =
+      rule.distance > 0.0 ? rule.distance : usual_distance(ends[0].spacing, ends[1].spacing);
+  MeasuredEnds measures(context, sources, std::move(ends), comparison.distance);
   CubesOfEach cubes;
   for (std::size_t own = 0; own < 2; ++own) {
-    const bool all_same = std::find(within[own].begin(), within[own].end(), 0) == within[own].end();
-    std::vector<Difference>& differences = comparison.clouds[own].differences;
-    differences = judge(
-        within[own], all_same ? std::vector<float>() : contradicted_ends(context, timed[own], timed[1 - own]),
-        rule.rays, own == 0 ? Difference::removed : Difference::added);
-    for (std::size_t i = 0; i < differences.size(); ++i) {
-      DifferenceTotals& totals = comparison.totals[number_of(differences[i])];
-      ++totals.rays;
-      const bool in_both = differences[i] == Difference::same;
-      totals.area += (in_both ? 0.5 : 1.0) * static_cast<double>(areas[own][i]);
-    }
-    add_cubes(context, *sources[own], differences, {comparison.distance}, cubes);
+    EndJudge judge(comparison, own,
+                   measures.all_within(own) ? std::vector<std::uint8_t>()
+                                            : seen_through(context, clouds, own, rule.rays));
+    stream(
+        context, *sources[own], nullptr, [](const RayCloud&) { return Nothing{}; },
+        [&](const RayCloud& rays, Nothing) {
+          judge.see(rays, measures.next(own, rays));
+          judge.add_cubes(cubes);
+        });
+    sources[own]->rewind();
   }
   for (std::size_t kind = 0; kind < kDifferences; ++kind)
     comparison.totals[kind].volume =

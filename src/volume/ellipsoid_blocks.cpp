@@ -34,6 +34,8 @@ std::size_t parts_for(const Context& context, const ReadEnds& ends, std::size_t 
   return std::min(2 * (ends.sample.bounded * bytes_per_point / memory_budget(context) + 1), kMostParts);
 }
 
+}  // namespace
+
 Eigen::AlignedBox3d box_of(const Ellipsoid& ellipsoid) {
   constexpr double kRounded = 1e-9, kLeast = 1e-6;  // of the distance to the origin; m
   const Eigen::Array3d reach =
@@ -42,8 +44,6 @@ Eigen::AlignedBox3d box_of(const Ellipsoid& ellipsoid) {
   return {Eigen::Vector3d(ellipsoid.centre.array() - reach),
           Eigen::Vector3d(ellipsoid.centre.array() + reach)};
 }
-
-}  // namespace
 
 EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, const ReadEnds& ends,
                                  std::size_t bytes_per_point)
@@ -58,10 +58,7 @@ EllipsoidBlocks::EllipsoidBlocks(const Context& context, RaySource& source, cons
       [&](const RayCloud&, const blocks::Copies<SeenPoint>& copies) { near.add(copies); });
   source.rewind();
   RangeNoise noise(ends.sample.bounded, ends.reach);
-  near.visit(context, [&](Block<SeenPoint>&& block, std::size_t) {
-    const PointTree points(context, block.records);
-    noise.add(context, points, block.own);
-  });
+  near.visit(context, [&](Block<SeenPoint>&& block, std::size_t) { noise.add(context, block); });
   range_noise_ = noise.value();
   near.visit_and_drop(context, [&](Block<SeenPoint>&& block, std::size_t part) {
     make(context, std::move(block), part, ends.reach);

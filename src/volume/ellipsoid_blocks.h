@@ -51,6 +51,9 @@ class EllipsoidBlocks {
   double range_noise_ = 0.0;
 };
 
+/// What holds an ellipsoid, with some room for rounding.
+[[nodiscard]] Eigen::AlignedBox3d box_of(const Ellipsoid& ellipsoid);
+
 /// Of `count` ellipsoids, `ellipsoid(i)` a reference to each; closed. The memory is that of the tree.
 [[nodiscard]] std::unique_ptr<EllipsoidTree> tree_of(
     const Context& context, std::size_t count,

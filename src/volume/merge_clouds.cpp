@@ -1,8 +1,4 @@
 #include "cloud_conflicts.h"
-#include "cloud_ellipsoids.h"
-#include "contradicting_rays.h"
-#include "count_rule.h"
-#include "each_chunk.h"
 #include "raise.h"
 #include "same_rays.h"
 
@@ -16,13 +12,6 @@
 namespace ray {
 namespace {
 
-/// Some rays of a chunk.
-struct PieceOfCloud {
-  RayCloud& rays;
-  std::vector<std::uint32_t> numbers;
-  std::vector<double> look_times;
-};
-
 std::vector<std::string> names_of(const std::vector<ColumnInfo>& columns) {
   std::vector<std::string> names;
   for (const ColumnInfo& column : columns)
@@ -34,15 +23,11 @@ class CloudMerger {
  public:
   CloudMerger(const Context& context, std::span<RaySource* const> clouds, const MergeRule& rule)
       : context_(context), clouds_(clouds), rule_(rule) {
-    NumberedRays numbered =
-        number_rays(context, clouds, key_rule(clouds, names_of(clouds.front()->info().extras)));
-    leaders_ = leaders_of(numbered);
-    first_ = std::move(numbered.first);
-    times_ = std::move(numbered.times);
-    for (const TimeSpan& of_cloud : times_) {
-      all_times_.first = std::min(all_times_.first, of_cloud.first);
-      all_times_.last = std::max(all_times_.last, of_cloud.last);
-    }
+    NumberedRays numbered(context, clouds, key_rule(clouds, names_of(clouds.front()->info().extras)));
+    leaders_ = leaders_of(context, numbered);
+    numbered_ = numbered.clouds();
+    for (const NumberedCloud& cloud : numbered_)
+      all_times_.add(cloud.times);
   }
 
   void find_conflicts() {
@@ -51,8 +36,19 @@ class CloudMerger {
       throw Error(ErrorCode::no_data,
                   "all rays of all clouds have the same time: nothing is older or newer than the rest");
     scores_.assign(leaders_.size(), 0.0F);
-    for (std::size_t own = 0; own < clouds_.size(); ++own)
-      find_conflicts_of(own);
+    const auto raise_all = [this](std::span<const std::uint32_t> numbers, std::span<const float> scores) {
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (scores[i] > 0.0F) raise(scores_[leaders_[numbers[i]]], scores[i]);
+    };
+    for (std::size_t own = 0; own < clouds_.size(); ++own) {
+      const std::vector<bool> has = rays_of(own);
+      ray::find_conflicts(context_,
+                          {.clouds = numbered_,
+                           .own = own,
+                           .rule = rule_,
+                           .is_shared = [&](std::uint32_t number) { return has[leaders_[number]]; }},
+                          {.ends = raise_all, .passes = raise_all});
+    }
   }
 
   MergeCounts write(RaySink& combined, RaySink* differences) const {
@@ -63,41 +59,16 @@ class CloudMerger {
   }
 
  private:
-  [[nodiscard]] std::uint32_t number_of(std::size_t cloud, const RawChunk& raw) const {
-    return static_cast<std::uint32_t>(first_[cloud] + raw.first_row);
+  [[nodiscard]] std::uint64_t end_of(std::size_t cloud) const {
+    return cloud + 1 < numbered_.size() ? numbered_[cloud + 1].first : leaders_.size();
   }
 
   /// By leaders: 1 for the rays that the cloud has.
   [[nodiscard]] std::vector<bool> rays_of(std::size_t cloud) const {
     std::vector<bool> has(leaders_.size());
-    for (std::uint64_t i = first_[cloud]; i < first_[cloud + 1]; ++i)
+    for (std::uint64_t i = numbered_[cloud].first; i < end_of(cloud); ++i)
       has[leaders_[i]] = true;
     return has;
-  }
-
-  /// `work(piece)` for the rays of a cloud; without those in `but`, if it is not empty.
-  template <class Work>
-  void each_piece(std::size_t cloud, const std::vector<bool>& but, const Work& work) const {
-    each_chunk(context_, *clouds_[cloud], [&](RayCloud& rays, const RawChunk& raw) {
-      PieceOfCloud piece{rays, {}, {}};
-      std::vector<std::uint32_t> rows;
-      const std::uint32_t first = number_of(cloud, raw);
-      for (std::uint32_t row = 0; row < rays.size(); ++row) {
-        if (!but.empty() && but[leaders_[first + row]]) continue;
-        rows.push_back(row);
-        piece.numbers.push_back(first + row);
-        piece.look_times.push_back(look_time(cloud, rays.times[row], first + row));
-      }
-      if (rows.size() < rays.size()) rays.keep_rows(rows);
-      if (!rays.empty()) work(piece);
-    });
-  }
-
-  /// Where a cloud has no times, a thousand rays in its order are one look.
-  [[nodiscard]] double look_time(std::size_t cloud, double time, std::uint32_t number) const {
-    constexpr std::uint32_t kOneLook = 1000;
-    const bool timed = times_[cloud].first < times_[cloud].last;
-    return timed ? time : CountRule{}.look_time * (0.5 + number / kOneLook);
   }
 
   /// How many have rays that no cloud before them has.
@@ -105,7 +76,7 @@ class CloudMerger {
     std::size_t count = 0;
     for (std::size_t cloud = 0; cloud < clouds_.size(); ++cloud) {
       bool any = false;
-      for (std::uint64_t i = first_[cloud]; i < first_[cloud + 1] && !any; ++i)
+      for (std::uint64_t i = numbered_[cloud].first; i < end_of(cloud) && !any; ++i)
         any = leaders_[i] == i;
       count += any ? 1 : 0;
     }
@@ -113,91 +84,6 @@ class CloudMerger {
   }
 
   [[nodiscard]] bool gives_way(float score) const { return static_cast<double>(score) > rule_.rays; }
-
-  void find_conflicts_of(std::size_t own) {
-    const CloudEllipsoids cloud = cloud_ellipsoids(context_, *clouds_[own]);
-    if (cloud.tree->size() == 0) return;
-    const EllipsoidTree& tree = *cloud.tree;
-    const CountRule counting = count_rule(rule_.paper, cloud.range_noise);
-    const std::vector<bool> own_rays = rays_of(own);
-    std::vector<float> ends;
-    std::vector<std::pair<std::size_t, std::vector<PassConflict>>> passes;
-    for (std::size_t other = 0; other < clouds_.size(); ++other) {
-      if (other == own) continue;
-      CloudConflicts conflicts = conflicts_with(own, other, tree, counting, own_rays);
-      if (ends.empty()) {
-        ends = std::move(conflicts.ends);
-      } else if (!conflicts.ends.empty()) {
-        for (std::size_t i = 0; i < ends.size(); ++i)
-          ends[i] = std::max(ends[i], conflicts.ends[i]);
-      }
-      if (!conflicts.passes.empty()) passes.emplace_back(other, std::move(conflicts.passes));
-    }
-    for (auto& [other, conflicts] : passes) {
-      // What itself gives way contradicts nobody.
-      std::erase_if(conflicts, [&](const PassConflict& conflict) {
-        return !gives_way(conflict.score) || (!ends.empty() && gives_way(ends[conflict.slot]));
-      });
-      score_passes(other, tree, counting, own_rays, conflicts);
-    }
-    if (!ends.empty()) score_ends(own, tree, ends);
-  }
-
-  CloudConflicts conflicts_with(std::size_t own, std::size_t other, const EllipsoidTree& tree,
-                                const CountRule& counting, const std::vector<bool>& own_rays) const {
-    const int fewest = rule_.paper ? 1 : 2;  // fewer change no score
-    std::vector<std::uint32_t> touched;
-    {
-      std::vector<std::uint8_t> passes(tree.size());
-      each_piece(other, own_rays,
-                 [&](const PieceOfCloud& piece) { count_passes(tree, piece.rays, counting.guard, passes); });
-      for (std::uint32_t slot = 0; slot < passes.size(); ++slot)
-        if (passes[slot] >= fewest) touched.push_back(slot);
-    }
-    if (touched.empty()) return {};
-    const SomeEllipsoids some = some_of(context_, tree, std::move(touched));
-    const FineTime times(all_times_.first, all_times_.last);
-    const auto met_by = [&](std::size_t cloud, const std::vector<bool>& but) {
-      std::vector<Encounters> met(some.slots.size());
-      each_piece(cloud, but, [&](const PieceOfCloud& piece) {
-        add_encounters(*some.tree, piece.rays, piece.look_times, counting, times, met);
-      });
-      return met;
-    };
-    return cloud_conflicts(context_, tree, some, met_by(own, {}), met_by(other, own_rays), rule_, own, other);
-  }
-
-  void score_passes(std::size_t other, const EllipsoidTree& tree, const CountRule& counting,
-                    const std::vector<bool>& own_rays, const std::vector<PassConflict>& conflicts) {
-    if (conflicts.empty()) return;
-    std::vector<std::uint32_t> slots;
-    for (const PassConflict& conflict : conflicts)
-      slots.push_back(conflict.slot);
-    const SomeEllipsoids some = some_of(context_, tree, std::move(slots));
-    std::vector<PassConflict> by_slot(conflicts.size());
-    for (std::size_t i = 0; i < conflicts.size(); ++i)
-      by_slot[some.tree->slot(i)] = conflicts[i];
-    each_piece(other, own_rays, [&](const PieceOfCloud& piece) {
-      const std::vector<float> scores = contradicting_rays(
-          *some.tree, piece.rays, counting.guard,
-          [&](std::uint32_t slot, double) { return by_slot[slot].score; },
-          [&](std::uint32_t slot) { return by_slot[slot].opacity; });
-      for (std::size_t i = 0; i < scores.size(); ++i)
-        if (scores[i] > 0.0F) raise(scores_[leaders_[piece.numbers[i]]], scores[i]);
-    });
-  }
-
-  void score_ends(std::size_t own, const EllipsoidTree& tree, std::span<const float> ends) {
-    std::size_t next = 0;
-    stream(
-        context_, *clouds_[own], nullptr,
-        [&](const RayCloud&, const RawChunk& raw) { return number_of(own, raw); },
-        [&](const RayCloud& rays, std::uint32_t first) {
-          for (std::uint32_t row = 0; row < rays.size(); ++row)
-            if (rays.bounded[row] != 0) raise(scores_[leaders_[first + row]], ends[tree.slot(next++)]);
-        });
-    clouds_[own]->rewind();
-  }
 
   void write_cloud(std::size_t cloud, RaySink& combined, RaySink* differences, MergeCounts& counts) const {
     const StreamCounts streamed = stream_parts(
@@ -210,7 +96,7 @@ class CloudMerger {
             part.of_chunk = true;
             part.rows.clear();
           }
-          const std::uint32_t first = number_of(cloud, raw);
+          const std::uint32_t first = numbered_[cloud].first_of(raw);
           std::uint64_t gone = 0;
           for (std::uint32_t row = 0; row < rays.size(); ++row) {
             if (leaders_[first + row] != first + row) continue;
@@ -237,9 +123,8 @@ class CloudMerger {
   const Context& context_;
   std::span<RaySource* const> clouds_;
   const MergeRule& rule_;
-  std::vector<std::uint64_t> first_;
+  std::vector<NumberedCloud> numbered_;
   std::vector<std::uint32_t> leaders_;
-  std::vector<TimeSpan> times_;
   TimeSpan all_times_;
   std::vector<float> scores_;  ///< by the numbers of leaders: the number of rays up to which it gives way
 };

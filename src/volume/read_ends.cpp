@@ -15,7 +15,7 @@ ReadEnds read_ends(const Context& context, RaySource& source, std::size_t most) 
   ReadEnds ends;
   blocks::EndSampler sampler;
   if (source.info().ray_count) ends.points.reserve(std::min<std::uint64_t>(*source.info().ray_count, most));
-  stream(
+  const StreamCounts counts = stream(
       context, source, nullptr,
       [](const RayCloud& rays, const RawChunk& raw) {
         OfChunk chunk{blocks::extract_all<SeenPoint>(rays, seen_end), 0.0, 0.0, raw.first_row + raw.rows};
@@ -37,11 +37,12 @@ ReadEnds read_ends(const Context& context, RaySource& source, std::size_t most) 
       });
   source.rewind();
   ends.sample = sampler.sample();
+  ends.dropped = counts.dropped;
+  ends.spacing = estimate_spacing(ends.sample.ends, ends.sample.bounded).value;
   // As far as where there is a hundredth of the usual density.
   constexpr double kSpacings = 32.0;
   constexpr std::size_t kFew = 8;  // have no spacing
-  if (ends.sample.ends.size() >= kFew)
-    ends.reach = kSpacings * estimate_spacing(ends.sample.ends, ends.sample.bounded).value;
+  if (ends.sample.ends.size() >= kFew) ends.reach = kSpacings * ends.spacing;
   return ends;
 }
 

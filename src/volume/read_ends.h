@@ -17,9 +17,11 @@ namespace ray {
 struct ReadEnds {
   std::vector<SeenPoint> points;  ///< of the bounded rays, in order; empty where they are too many
   EndSample sample;
+  double spacing = 0.0;                                    ///< m; 0 if unknown
   double reach = std::numeric_limits<double>::infinity();  ///< m, of neighbours
   std::uint64_t rays = 0;                                  ///< unbounded ones too
   std::uint64_t rows = 0;                                  ///< of the source, invalid ones too
+  std::uint64_t dropped = 0;                               ///< of these, invalid ones
   /// s, of all rays; first above last where there are none.
   double first_time = std::numeric_limits<double>::infinity();
   double last_time = -std::numeric_limits<double>::infinity();

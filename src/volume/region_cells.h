@@ -51,9 +51,9 @@ class RegionCells {
   void close(const Context& context);
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
 
-  /// Groups of all cells in which a number can be above 0, such that none depends on more than `most`
-  /// ellipsoids where that can be.
-  [[nodiscard]] CellGroups groups(std::span<const CellState> states, std::size_t most) const;
+  /// Groups of all cells in which a number can be above 0 after it has spread so many times, such that none
+  /// depends on more than `most` ellipsoids where that can be.
+  [[nodiscard]] CellGroups groups(std::span<const CellState> states, int spreads, std::size_t most) const;
 
  private:
   struct Hash {

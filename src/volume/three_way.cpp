@@ -85,12 +85,14 @@ ThreeWayColumns three_way_columns(const ThreeSchemas& schemas) {
 
 ThreeWay::ThreeWay(const Context& context, const ThreeClouds& clouds, ThreeWayColumns columns)
     : clouds_(clouds), columns_(std::move(columns)) {
-  const NumberedRays numbered = number_rays(context, clouds, key_rule(clouds, columns_.compared));
-  first_ = numbered.first;
-  counts_.rays = numbered.rays.size();
+  NumberedRays numbered(context, clouds, key_rule(clouds, columns_.compared));
+  for (const NumberedCloud& cloud : numbered.clouds())
+    first_.push_back(cloud.first);
+  first_.push_back(numbered.numbers());
+  counts_.rays = numbered.rays();
   kept_.resize(first_.back());
   added_.resize(first_.back());
-  each_group(numbered, [&](std::span<const NumberedRay> same) {
+  numbered.each_group(context, [&](std::span<const NumberedRay> same) {
     // In order of their numbers: copies in the base, in cloud 1, in cloud 2.
     std::array<std::span<const NumberedRay>, 3> copies;
     for (std::size_t cloud = 0, begin = 0; cloud < copies.size(); ++cloud) {

@@ -16,7 +16,7 @@ constexpr Transience kByChance{1.0F, 3.0F, 1.0F};
 constexpr Transience kHintByChance{0.5F, 1.5F, 0.5F};
 
 constexpr float kTogether = 2.5F;  ///< how much surer several are than one
-constexpr float kSource = 14.0F, kLeastHint = 0.7F;
+constexpr float kSource = 14.0F, kSolidSource = 10.0F, kLeastHint = 0.7F;
 
 float beyond(const Transience& transience, const Transience& chance, const Contradiction& which) {
   return (which.before ? std::max(0.0F, transience.before - chance.before) : 0.0F) +
@@ -34,13 +34,19 @@ class Regions {
  public:
   Regions(const Context& context, const EllipsoidTree& tree,
           const std::function<RegionSeed(std::size_t slot)>& seed)
-      : context_(context), tree_(tree), own_(tree.size()), hints_(tree.size()), opaque_(tree.size()) {
+      : context_(context),
+        tree_(tree),
+        own_(tree.size()),
+        hints_(tree.size()),
+        opaque_(tree.size()),
+        solid_(tree.size()) {
     parallel_for(context, tree.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const RegionSeed of_slot = seed(i);
         own_[i] = of_slot.own;
         hints_[i] = of_slot.hint;
         opaque_[i] = of_slot.opaque;
+        solid_[i] = of_slot.solid;
       }
     });
   }
@@ -56,21 +62,22 @@ class Regions {
   }
 
   /// To those whose centre is in the ellipsoid, and to those in which its centre is.
-  void spread() {
+  void spread(float source, bool only_solid) {
     constexpr float kMostOfHint = 10.0F;
     std::vector<float>& reached = own_;  // which is needed no more
     std::fill(reached.begin(), reached.end(), 0.0F);
-    each([&](std::size_t i) { return scores_[i] >= kSource || hints_[i] > kLeastHint; },
+    const auto may = [&](std::size_t i) { return !only_solid || solid_[i] != 0; };
+    each([&](std::size_t i) { return may(i) && (scores_[i] >= source || hints_[i] > kLeastHint); },
          [&](std::size_t i, std::span<const std::uint32_t> around) {
            float best = 0.0F;
            for (const std::uint32_t other : around) {
-             best = std::max(best, scores_[other]);
-             if (scores_[i] >= kSource) raise(reached[other], scores_[i]);
+             if (may(other)) best = std::max(best, scores_[other]);
+             if (scores_[i] >= source) raise(reached[other], scores_[i]);
            }
-           if (best >= kSource) raise(reached[i], best);
+           if (best >= source) raise(reached[i], best);
          });
     for (std::size_t i = 0; i < scores_.size(); ++i)
-      if (hints_[i] > kLeastHint)
+      if (may(i) && hints_[i] > kLeastHint)
         scores_[i] = std::max(scores_[i], std::min(kMostOfHint * hints_[i], reached[i]));
   }
 
@@ -123,32 +130,35 @@ class Regions {
   const EllipsoidTree& tree_;
   std::vector<float> own_;
   std::vector<float> hints_;
-  std::vector<std::uint8_t> opaque_;
+  std::vector<std::uint8_t> opaque_, solid_;
   std::vector<float> scores_;
 };
 
 }  // namespace
 
 RegionSeed region_seed(const Evidence& evidence, const Contradiction& which) {
-  constexpr float kOpaque = 0.95F;
+  constexpr float kOpaque = 0.95F, kSolid = 0.5F;
+  const float opacity = opacity_while_there(evidence);
   return {beyond(transience_of(evidence), kByChance, which), beyond(hint_of(evidence), kHintByChance, which),
-          static_cast<std::uint8_t>(opacity_while_there(evidence) >= kOpaque ? 1 : 0)};
+          static_cast<std::uint8_t>(opacity >= kOpaque ? 1 : 0),
+          static_cast<std::uint8_t>(opacity >= kSolid ? 1 : 0)};
 }
 
 bool is_awake(const RegionSeed& seed) {
   return seed.own > 0.0F || seed.hint > kLeastHint;
 }
 
-bool is_source(const RegionSeed& seed) {
-  return kTogether * seed.own >= kSource;
+bool is_source(const RegionSeed& seed, const SpreadSteps& steps) {
+  return kTogether * seed.own >= (steps.solid > 0 && seed.solid != 0 ? kSolidSource : kSource);
 }
 
 std::vector<float> transient_regions(const Context& context, const EllipsoidTree& tree,
-                                     const std::function<RegionSeed(std::size_t slot)>& seed) {
+                                     const std::function<RegionSeed(std::size_t slot)>& seed,
+                                     const SpreadSteps& steps) {
   Regions regions(context, tree, seed);
   regions.begin();
-  for (int i = 0; i < kSpreads; ++i)
-    regions.spread();
+  for (int i = 0; i < steps.all(); ++i)
+    i < steps.any ? regions.spread(kSource, false) : regions.spread(kSolidSource, true);
   regions.fill_holes();
   return regions.take();
 }
@@ -160,9 +170,10 @@ float paper_score(const Evidence& evidence, const Contradiction& which) {
 
 std::vector<float> transience_scores(const Context& context, const EllipsoidTree& tree,
                                      std::span<const Evidence> evidence, const Contradiction& which,
-                                     bool paper) {
+                                     const SpreadSteps& steps, bool paper) {
   if (!paper)
-    return transient_regions(context, tree, [&](std::size_t i) { return region_seed(evidence[i], which); });
+    return transient_regions(
+        context, tree, [&](std::size_t i) { return region_seed(evidence[i], which); }, steps);
   std::vector<float> scores(evidence.size());
   std::transform(evidence.begin(), evidence.end(), scores.begin(),
                  [&](const Evidence& of_slot) { return paper_score(of_slot, which); });

@@ -32,14 +32,14 @@ TransientCounts split_whole(const Context& context, RaySource& source, RaySink& 
                             ReadEnds&& ends, JudgeRule rule) {
   EllipsoidMaker maker(context, std::move(ends.points));
   RangeNoise noise(ends.sample.bounded, ends.reach);
-  noise.add(context, maker.points(), {});
+  noise.add(context, maker.points());
   rule.counting = count_rule(rule.transients.paper, noise.value());
   const std::unique_ptr<EllipsoidTree> tree =
       EllipsoidMaker(std::move(maker)).make(context, ends.reach, noise.value());
   const std::vector<Evidence> evidence = count_evidence(context, source, source, *tree, rule);
   const Sides sides = sides_of(rule.transients.merge);
   const auto scores_of = [&](const std::optional<Contradiction>& which) {
-    return which ? transience_scores(context, *tree, evidence, *which, rule.transients.paper)
+    return which ? transience_scores(context, *tree, evidence, *which, kWithinCloud, rule.transients.paper)
                  : std::vector<float>();
   };
   const std::vector<float> of_ends = scores_of(sides.ends);

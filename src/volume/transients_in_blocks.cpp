@@ -63,8 +63,8 @@ class TransientBlocks {
 
   void count() {
     if (!rule_.transients.paper) {
-      if (sides_.ends) of_ends_ = std::make_unique<BlockRegions>(blocks_);
-      if (sides_.passes) of_passes_ = std::make_unique<BlockRegions>(blocks_);
+      if (sides_.ends) of_ends_ = std::make_unique<BlockRegions>(blocks_, kWithinCloud);
+      if (sides_.passes) of_passes_ = std::make_unique<BlockRegions>(blocks_, kWithinCloud);
     }
     each_part([&](std::size_t part) {
       const std::vector<Evidence> evidence = count_part(part);

@@ -128,6 +128,14 @@ class SpilledRecords {
     });
   }
 
+  /// One block, for the last time.
+  [[nodiscard]] Block<Record> take(std::size_t part) {
+    Block<Record> block = read(part);
+    records_.drop(part);
+    own_.drop(part);
+    return block;
+  }
+
  private:
   template <class Work, class WhenRead>
   void each_block(const Context& context, const Work& work, const WhenRead& when_read) {

@@ -69,13 +69,15 @@ struct CloudComparison {
 /// cloud, within 32 spacings: true on average whatever the density. One with fewer neighbours has as many as
 /// it has; one with none, a square as wide as the distance.
 ///
-/// Reads each cloud twice, and four times more where there are differences. Neighbourhood shape, in memory:
-/// O(n log n), 1 µs of one core a ray where nothing is different, else 4.5; 140 bytes for each ray of the
-/// larger cloud. The result does not depend on threads, and on the order of the rays only as far as samples
-/// of large clouds do, from which come spacing and noise, and the rounding of areas.
+/// Reads each cloud twice, and four times more where there are differences. Neighbourhood shape: O(n log n),
+/// 1 µs of one core a ray where nothing is different, else 4.5; 140 bytes for each bounded ray of the larger
+/// cloud and 18 for each of both. Where that is more than context.memory, blocks of space are worked on one
+/// after the other, in temporary files, in half as much time again: then 6 bytes for each bounded ray are
+/// needed besides. The result depends neither on threads nor on memory, and on the order of the rays only as
+/// far as samples of large clouds do, from which come spacing and noise, and the rounding of areas.
 ///
 /// Throws Error(usage) if the distance is below 0 or the rays are not above 0, Error(out_of_range) if the
-/// distance is too small for the coordinates (2^62 of it).
+/// distance is too small for the coordinates (2^62 of it) or there are more than 4 billion rays.
 [[nodiscard]] CloudComparison compare_clouds(const Context& context, RaySource& first, RaySource& second,
                                              const DifferenceRule& rule);
 

@@ -33,8 +33,9 @@ struct ThreeWayColumns {
 /// ray of which anything was changed is another ray. Of rays that come several times each copy counts.
 class ThreeWay {
  public:
-  /// Reads each cloud once, O(n log n), 48 bytes a ray meanwhile and 3 bits after. All three have the same
-  /// columns, among them the given ones. They must outlive this and its parts.
+  /// Reads each cloud once, O(n log n). 48 bytes a ray meanwhile, in temporary files if that is more than
+  /// context.memory; 2 bits after. All three have the same columns, among them the given ones. They must
+  /// outlive this and its parts.
   ThreeWay(const Context& context, const ThreeClouds& clouds, ThreeWayColumns columns);
 
   struct Counts {

@@ -85,6 +85,7 @@ RegionSeed seed_at(const Eigen::Vector3d& centre) {
   else if (patch < 0.1)
     seed.own = static_cast<float>(4.0 * random.uniform(0, 3));
   seed.opaque = random.below(2, 0, 4) == 0 ? 1 : 0;
+  seed.solid = random.below(5, 0, 5) != 0 ? 1 : 0;
   return seed;
 }
 
@@ -93,12 +94,13 @@ struct Scored {
   std::vector<float> scores;
 };
 
-Scored scored_whole(const RayCloud& cloud) {
+Scored scored_whole(const RayCloud& cloud, const SpreadSteps& steps) {
   MemorySource source(cloud, 100);
   const CloudEllipsoids whole = cloud_ellipsoids({}, source);
-  const std::vector<float> by_slot = transient_regions({}, *whole.tree, [&](std::size_t slot) {
-    return seed_at(whole.tree->at_slot(static_cast<std::uint32_t>(slot)).centre);
-  });
+  const std::vector<float> by_slot = transient_regions(
+      {}, *whole.tree,
+      [&](std::size_t slot) { return seed_at(whole.tree->at_slot(static_cast<std::uint32_t>(slot)).centre); },
+      steps);
   Scored scored;
   for (std::size_t i = 0; i < whole.tree->size(); ++i) {
     scored.ellipsoids.push_back(whole.tree->at_slot(whole.tree->slot(i)));
@@ -107,7 +109,7 @@ Scored scored_whole(const RayCloud& cloud) {
   return scored;
 }
 
-Scored scored_in_blocks(const RayCloud& cloud, const Context& context) {
+Scored scored_in_blocks(const RayCloud& cloud, const SpreadSteps& steps, const Context& context) {
   MemorySource source(cloud, 100);
   EllipsoidBlocks blocks(context, source, read_ends(context, source, 0), 140);
   const auto seeds_of = [&](std::size_t part) {
@@ -116,7 +118,7 @@ Scored scored_in_blocks(const RayCloud& cloud, const Context& context) {
       seeds.push_back(seed_at(centre_of(ellipsoid)));
     return seeds;
   };
-  BlockRegions regions(blocks);
+  BlockRegions regions(blocks, steps);
   for (std::size_t part = 0; part < blocks.parts(); ++part)
     regions.see(part, seeds_of(part), blocks.load(part));
   regions.judge(context, seeds_of);
@@ -149,29 +151,54 @@ void expect_same(const Scored& blocks, const Scored& whole) {
 
 TEST(BlockRegions, knowWhatTheWholeCloudDoes) {
   const RayCloud cloud = surroundings(1, 3000);
-  const Scored whole = scored_whole(cloud);
-  EXPECT_GT(std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
-            200);
-  for (const std::size_t memory : {200UL << 10, 50UL << 10})
-    expect_same(scored_in_blocks(cloud, {.memory = memory}), whole);
+  for (const SpreadSteps& steps : {kWithinCloud, kBetweenClouds}) {
+    const Scored whole = scored_whole(cloud, steps);
+    EXPECT_GT(
+        std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
+        200);
+    for (const std::size_t memory : {200UL << 10, 50UL << 10})
+      expect_same(scored_in_blocks(cloud, steps, {.memory = memory}), whole);
+  }
 }
 
 TEST(BlockRegions, knowHowFarItSpreads) {
   // Cells are in powers of two: how many ellipsoids fit one depends on the spacing.
   for (const double spacing : {0.03, 0.034, 0.039, 0.045, 0.051}) {
     const RayCloud cloud = wire(spacing, 3000);
-    const Scored whole = scored_whole(cloud);
-    EXPECT_GT(
-        std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
-        200);
-    expect_same(scored_in_blocks(cloud, {.memory = 10UL << 10}), whole);
+    for (const SpreadSteps& steps : {kWithinCloud, kBetweenClouds}) {
+      const Scored whole = scored_whole(cloud, steps);
+      EXPECT_GT(
+          std::count_if(whole.scores.begin(), whole.scores.end(), [](float score) { return score > 0.0F; }),
+          200);
+      expect_same(scored_in_blocks(cloud, steps, {.memory = 10UL << 10}), whole);
+    }
   }
 }
 
 RC_GTEST_PROP(BlockRegions, knowWhatTheWholeCloudDoesForAnyNumber, (std::uint64_t seed)) {
   const RayCloud cloud = surroundings(seed, *rc::gen::inRange<std::size_t>(1, 400));
-  expect_same(scored_in_blocks(cloud, {.memory = *rc::gen::inRange<std::size_t>(1, 30000)}),
-              scored_whole(cloud));
+  const SpreadSteps steps{.any = *rc::gen::inRange(0, 5), .solid = *rc::gen::inRange(0, 9)};
+  expect_same(scored_in_blocks(cloud, steps, {.memory = *rc::gen::inRange<std::size_t>(1, 30000)}),
+              scored_whole(cloud, steps));
+}
+
+TEST(TransientRegions, spreadFurtherBetweenCloudsWhereSolid) {
+  const RayCloud cloud = wire(0.03, 400);
+  MemorySource source(cloud, 100);
+  const CloudEllipsoids whole = cloud_ellipsoids({}, source);
+  const auto reached = [&](std::uint8_t solid, const SpreadSteps& steps) {
+    const std::vector<float> scores = transient_regions(
+        {}, *whole.tree,
+        [&](std::size_t slot) {
+          const bool sure = whole.tree->at_slot(static_cast<std::uint32_t>(slot)).centre.x() < 1.0;
+          return RegionSeed{.own = sure ? 30.0F : 0.0F, .hint = 6.0F, .opaque = 0, .solid = solid};
+        },
+        steps);
+    return std::count_if(scores.begin(), scores.end(), [](float score) { return score > 0.0F; });
+  };
+  EXPECT_GT(reached(1, kBetweenClouds), reached(1, kWithinCloud) + 20);
+  EXPECT_EQ(reached(0, kBetweenClouds), reached(0, kWithinCloud));
+  EXPECT_EQ(reached(1, kWithinCloud), reached(0, kWithinCloud));
 }
 
 /// m, of the nearest point of a line from a box: the distance is convex along it.
