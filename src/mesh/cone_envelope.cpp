@@ -1,3 +1,4 @@
+#include <raycloud/exec/parallel.h>
 #include <raycloud/mesh/cone_envelope.h>
 
 #include <algorithm>
@@ -89,12 +90,15 @@ class LowestTree {
 
 }  // namespace
 
-std::vector<std::uint8_t> cone_envelope(std::span<const Eigen::Vector3d> points, double gradient) {
+std::vector<std::uint8_t> cone_envelope(const Context& context, std::span<const Eigen::Vector3d> points,
+                                        double gradient) {
   std::vector<std::uint8_t> ground(points.size(), 0);
   if (points.empty()) return ground;
   const LowestTree tree(points);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
+  parallel_for(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
+  });
   return ground;
 }
 

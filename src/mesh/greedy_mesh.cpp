@@ -1,7 +1,10 @@
 #include "greedy_mesh.h"
 
+#include "insertion_order.h"
 #include "lower_hull.h"
 #include "plan_steps.h"
+
+#include <raycloud/exec/parallel.h>
 
 #include <cmath>
 #include <limits>
@@ -15,10 +18,10 @@ class GreedyMesh {
  public:
   using Index = LowerHull::Index;
 
-  GreedyMesh(const std::vector<Eigen::Vector3d>& points, double tolerance)
-      : points_(points), tolerance_(tolerance), steps_(bounds_of(points)) {}
+  GreedyMesh(const Context& context, const std::vector<Eigen::Vector3d>& points, double tolerance)
+      : context_(context), points_(points), tolerance_(tolerance), steps_(bounds_of(points)) {}
 
-  Mesh run() {
+  Mesh run(const std::vector<Index>& begin_with) {
     std::vector<PlanPoint> places;
     places.reserve(points_.size() + 1);
     for (const Eigen::Vector3d& point : points_) {
@@ -28,14 +31,7 @@ class GreedyMesh {
     }
     hull_ = LowerHull::make(std::move(places));
     if (hull_ == nullptr) return {};
-    waiting_.resize(hull_->complex().places());
-    std::vector<Index> all;
-    for (Index i = 0; i < points_.size(); ++i)
-      all.push_back(i);
-    for (const Index i : hull_->first())
-      all[i] = kDone;
-    std::erase(all, kDone);
-    distribute(all);
+    begin(begin_with);
     while (!queue_.empty()) {
       const Worst worst = queue_.top();
       queue_.pop();
@@ -65,6 +61,46 @@ class GreedyMesh {
     for (const Eigen::Vector3d& point : points)
       bounds.add(point);
     return bounds;
+  }
+
+  /// Inserts these, and sorts the others by the faces they are over.
+  void begin(const std::vector<Index>& begin_with) {
+    std::vector<std::uint8_t> is_in(points_.size(), 0);
+    for (const Index i : hull_->first())
+      is_in[i] = 1;
+    for (const Index i : insertion_order_of(begin_with)) {
+      if (is_in[i] == 0) hull_->complex().insert(i);
+      is_in[i] = 1;
+    }
+    const auto& complex = hull_->complex();
+    waiting_.resize(complex.places());
+    std::vector<Index> face_of(points_.size(), kDone);
+    parallel_for(context_, points_.size(), 8192, [&](std::size_t first, std::size_t last) {
+      Index near = complex.created().front();
+      for (std::size_t i = first; i < last; ++i)
+        if (is_in[i] == 0) near = face_of[i] = complex.locate(static_cast<Index>(i), near);
+    });
+    for (Index i = 0; i < points_.size(); ++i)
+      if (face_of[i] != kDone) waiting_[face_of[i]].points.push_back(i);
+    std::vector<Worst> worst(waiting_.size());
+    parallel_for(context_, waiting_.size(), 4096, [&](std::size_t first, std::size_t last) {
+      for (std::size_t face = first; face < last; ++face)
+        worst[face] = worst_over(static_cast<Index>(face));
+    });
+    for (const Worst& one : worst)
+      if (one.point != kDone) queue_.push(one);
+  }
+
+  [[nodiscard]] std::vector<Index> insertion_order_of(const std::vector<Index>& some) const {
+    std::vector<std::array<std::uint32_t, 2>> places;
+    places.reserve(some.size());
+    for (const Index i : some)
+      places.push_back({static_cast<std::uint32_t>(hull_->points()[i].x),
+                        static_cast<std::uint32_t>(hull_->points()[i].y)});
+    std::vector<Index> order = insertion_order(places);
+    for (Index& i : order)
+      i = some[i];
+    return order;
   }
 
   void add(const Worst& worst) {
@@ -104,6 +140,12 @@ class GreedyMesh {
   }
 
   void find_worst(Index face) {
+    const Worst worst = worst_over(face);
+    if (worst.point != kDone) queue_.push(worst);
+  }
+
+  /// The one to be added, kDone if there is none.
+  [[nodiscard]] Worst worst_over(Index face) const {
     const auto& [a, b, c] = hull_->complex().face(face).vertices;
     const bool outside = hull_->complex().is_infinite(face);
     Worst worst{0.0, kDone, face, waiting_[face].stamp};
@@ -115,7 +157,8 @@ class GreedyMesh {
         worst.point = point;
       }
     }
-    if (worst.point != kDone && (outside || worst.error > tolerance_)) queue_.push(worst);
+    if (!outside && !(worst.error > tolerance_)) worst.point = kDone;
+    return worst;
   }
 
   [[nodiscard]] std::int64_t turn(Index a, Index b, Index c) const {
@@ -150,6 +193,7 @@ class GreedyMesh {
     return mesh;
   }
 
+  const Context& context_;
   const std::vector<Eigen::Vector3d>& points_;
   double tolerance_;
   PlanSteps steps_;
@@ -161,9 +205,10 @@ class GreedyMesh {
 
 }  // namespace
 
-Mesh greedy_mesh(const std::vector<Eigen::Vector3d>& points, double tolerance) {
+Mesh greedy_mesh(const Context& context, const std::vector<Eigen::Vector3d>& points, double tolerance,
+                 const std::vector<std::uint32_t>& begin_with) {
   if (points.size() < 3) return {};
-  return GreedyMesh(points, tolerance).run();
+  return GreedyMesh(context, points, tolerance).run(begin_with);
 }
 
 }  // namespace ray

@@ -114,10 +114,14 @@ std::vector<Eigen::Vector3d> ground_heights(const Context& context, RaySource& s
           if (count < 0xFFFF) ++count;
         }
       });
+  std::vector<double> peaks(sites.size(), -1.0);
+  parallel_for(context, sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell)
+      if (sites[cell].is_there) peaks[cell] = lowest_peak(frequencies[cell]);
+  });
   std::vector<Eigen::Vector3d> ground;
   for (std::size_t cell = 0; cell < sites.size(); ++cell) {
-    if (!sites[cell].is_there) continue;
-    const double bins = lowest_peak(frequencies[cell]);
+    const double bins = peaks[cell];
     if (bins < 0.0) continue;
     const Eigen::Vector2d centre = raster.centre(cell);
     ground.emplace_back(centre.x(), centre.y(), planes[cell].height + kLowest + bins * kBinHeight);
