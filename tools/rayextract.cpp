@@ -25,7 +25,7 @@ const Command kCommand{
         R"(Finds the ground under what grows and stands on it and writes it as a mesh of triangles with fronts
 upwards. What stands on it is taken off, be it a stone, a tree or a house: what is steeper than the gradient, and what
 is narrower than 60 m with steps around it. False returns below the ground, which have no others beside
-them, do not pull it down, and noise does not lower it: it passes where most ends lie. Where no ground was
+them or seem to have come through it, do not pull it down, and noise does not lower it: it passes where most ends lie. Where no ground was
 seen the mesh spans the gap.
 
 With --raster the heights are written as a GeoTIFF too, in the coordinate system of the cloud where that is
@@ -52,8 +52,8 @@ known: the ground (DTM), and with --canopy the highest ends (DSM) and what lies 
          view_option()},
     .writes = "CLOUD_mesh.ply, CLOUD_dtm.tif, CLOUD_dsm.tif and CLOUD_chm.tif",
     .memory =
-        "450 bytes for each cell of the map, which is about two spacings of the ends wide: less than 2 GB "
-        "for any cloud.",
+        "100 bytes for each cell of the map, which is about two spacings of the ends wide, and 300 more for each that "
+        "has ends: less than 2 GB for any cloud.",
     .see_also = {"raywrap", "raytranslate", "raysplit"}};
 
 using NamedRaster = std::pair<std::filesystem::path, ray::Raster>;

@@ -1,5 +1,6 @@
 #include "ground_sites.h"
 
+#include "free_space_below.h"
 #include "low_levels.h"
 #include "plane_fit.h"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 namespace ray {
@@ -18,24 +20,28 @@ constexpr std::uint32_t kLeastEnds = 3;
 constexpr std::uint64_t kNeighbourhood = 12;  // ends that make one
 constexpr std::int64_t kMostRings = 6;
 
-/// Which level of each cell is the ground; kLowLevels where none is.
+/// Which level of each cell is the ground; kNoLevel where none is.
 class LevelChoice {
  public:
   LevelChoice(const LowestEnds& cells, double gradient)
       : cells_(cells), raster_(cells.raster()), window_(std::max(kLeastWindow, gradient * raster_.width)) {}
 
   /// The lowest from level `from` on that has support.
-  [[nodiscard]] std::size_t lowest_supported(std::size_t cell, std::size_t from) const {
-    if (cells_[cell].count == 0) return kLowLevels;
+  [[nodiscard]] std::uint8_t lowest_supported(std::size_t cell, std::size_t from) const {
+    if (cells_.count(cell) == 0) return kNoLevel;
     const std::int64_t rings = rings_of(cell);
-    for (std::size_t i = from; i < kLowLevels && cells_[cell].levels[i].count > 0; ++i)
-      if (has_support(cell, i, rings)) return i;
-    return kLowLevels;
+    const LowLevels& levels = cells_.levels(cell);
+    for (std::size_t i = from; i < kLowLevels && levels[i].count > 0; ++i)
+      if (has_support(cell, i, rings)) return static_cast<std::uint8_t>(i);
+    return kNoLevel;
   }
 
-  [[nodiscard]] bool is_pit(std::size_t cell, const std::vector<std::size_t>& chosen) const {
+  [[nodiscard]] bool is_pit(std::size_t cell, const std::vector<std::uint8_t>& chosen) const {
     return is_hole_of_few(cell, chosen) || is_below_all(cell, chosen) || is_behind_ground(cell, chosen);
   }
+
+  /// How far under a site a ray must pass for the ground of its cell not to be in between.
+  [[nodiscard]] double surely_below() const { return 1.5 * window_; }
 
   [[nodiscard]] GroundSite site(std::size_t cell, std::size_t level) const {
     return {cells_.place(cell, level), true};
@@ -44,13 +50,13 @@ class LevelChoice {
  private:
   /// Whether the level has few of the cell's ends and lies in a hole below the plane through the sites
   /// around; if the cell itself has too few ends to tell, these must be a smooth ground.
-  [[nodiscard]] bool is_hole_of_few(std::size_t cell, const std::vector<std::size_t>& chosen) const {
+  [[nodiscard]] bool is_hole_of_few(std::size_t cell, const std::vector<std::uint8_t>& chosen) const {
     constexpr double kFew = 0.25;
     constexpr std::uint32_t kMany = 4;
     constexpr double kSmooth = 0.3;  // of the depth of the hole
     constexpr std::size_t kLeastSites = 6;
-    const LowLevel& level = cells_[cell].levels[chosen[cell]];
-    if (level.count > 1 && static_cast<double>(level.count) > kFew * cells_[cell].count) return false;
+    const LowLevel& level = cells_.levels(cell)[chosen[cell]];
+    if (level.count > 1 && static_cast<double>(level.count) > kFew * cells_.count(cell)) return false;
     const Eigen::Vector3d own = cells_.place(cell, chosen[cell]);
     std::vector<Eigen::Vector3d> around;
     for (std::int64_t rings = 1; rings <= kMostRings; ++rings) {
@@ -58,16 +64,17 @@ class LevelChoice {
       raster_.around(
           cell,
           [&](std::size_t near) {
-            if (near != cell && chosen[near] < kLowLevels)
+            if (near != cell && chosen[near] != kNoLevel)
               around.push_back(cells_.place(near, chosen[near]) - own);
           },
           rings);
       if (around.size() < kLeastSites) continue;
-      const double deep = depth(static_cast<double>(rings));
-      if (std::none_of(around.begin(), around.end(), [&](const auto& site) { return site.z() > deep; }))
+      if (std::none_of(around.begin(), around.end(), [](const auto& site) { return site.z() > kLeastPit; }))
         return false;
+      const double deep = depth(static_cast<double>(rings));
       const PlaneFit::Plane plane = plane_without_pits(around, deep);
-      return plane.height > deep && (cells_[cell].count >= kMany || plane.error < kSmooth * plane.height);
+      if (plane.error < kSmooth * plane.height) return plane.height > kLeastPit;
+      return plane.height > deep && cells_.count(cell) >= kMany;
     }
     return false;
   }
@@ -94,16 +101,16 @@ class LevelChoice {
   }
 
   /// Whether it is a lone end below every site of two rings around.
-  [[nodiscard]] bool is_below_all(std::size_t cell, const std::vector<std::size_t>& chosen) const {
+  [[nodiscard]] bool is_below_all(std::size_t cell, const std::vector<std::uint8_t>& chosen) const {
     constexpr int kLeastSites = 6;
-    if (cells_[cell].levels[chosen[cell]].count > 1) return false;
+    if (cells_.levels(cell)[chosen[cell]].count > 1) return false;
     const Eigen::Vector3d own = cells_.place(cell, chosen[cell]);
     int count = 0;
     bool is_lowest = true;
     raster_.around(
         cell,
         [&](std::size_t near) {
-          if (near == cell || chosen[near] == kLowLevels) return;
+          if (near == cell || chosen[near] == kNoLevel) return;
           ++count;
           if (cells_.place(near, chosen[near]).z() < own.z() + depth(1.0)) is_lowest = false;
         },
@@ -113,30 +120,45 @@ class LevelChoice {
 
   /// Whether it is of few ends and the ray to it passes under the sites on its last bit of way, and these
   /// lie smoothly behind each other, as a ground does and the leaves of a crown do not.
-  [[nodiscard]] bool is_behind_ground(std::size_t cell, const std::vector<std::size_t>& chosen) const {
+  [[nodiscard]] bool is_behind_ground(std::size_t cell, const std::vector<std::uint8_t>& chosen) const {
     constexpr std::uint32_t kFewEnds = 2;
     constexpr int kLeastSites = 3;
-    constexpr std::int64_t kWay = 24;  // cells
-    const LowLevel& level = cells_[cell].levels[chosen[cell]];
-    const Eigen::Vector3d towards(level.towards[0], level.towards[1], level.towards[2]);
-    const double run = towards.head<2>().norm();
-    if (!(run > 0.05) || level.count > kFewEnds) return false;
+    constexpr double kWay = 24.0;    // cells
+    constexpr double kSteep = 0.05;  // m beside each m down
+    const LowLevel& level = cells_.levels(cell)[chosen[cell]];
+    if (level.count > kFewEnds) return false;
+    const Eigen::Vector3d to_sensor(level.to_sensor[0], level.to_sensor[1], level.to_sensor[2]);
+    const double run = to_sensor.head<2>().norm();
+    if (!(run > kSteep * std::abs(to_sensor.z()))) return false;
+    const auto way = static_cast<std::int64_t>(std::min(kWay, run / raster_.width));
     const Eigen::Vector3d own = cells_.place(cell, chosen[cell]);
-    const Eigen::Vector3d step = raster_.width / run * towards;
+    const Eigen::Vector3d step = raster_.width / run * to_sensor;
     int above = 0;
-    double last = 0.0;
-    for (std::int64_t i = 1; i <= kWay && above < kLeastSites; ++i) {
+    Eigen::Vector3d last = own;
+    for (std::int64_t i = 1; i <= way && above < kLeastSites; ++i) {
       const Eigen::Vector3d on_ray = own + static_cast<double>(i) * step;
-      const auto near = raster_.find(on_ray.x(), on_ray.y());
-      if (!near) break;
-      if (*near == cell || chosen[*near] == kLowLevels) continue;
-      const double height = cells_.place(*near, chosen[*near]).z();
-      if (height < on_ray.z() + depth(1.0)) break;
-      if (above > 0 && std::abs(height - last) > 1.5 * window_) break;
-      last = height;
+      const auto lowest = lowest_near(on_ray, cell, chosen);
+      if (!lowest || *lowest == last) continue;
+      if (lowest->z() < on_ray.z() + depth(1.0)) break;
+      if (above > 0 && std::abs(lowest->z() - last.z()) > 1.5 * window_) break;
+      last = *lowest;
       ++above;
     }
     return above >= kLeastSites;
+  }
+
+  /// The lowest site of the cells around a place, but for that of one cell.
+  [[nodiscard]] std::optional<Eigen::Vector3d> lowest_near(const Eigen::Vector3d& place, std::size_t but_for,
+                                                           const std::vector<std::uint8_t>& chosen) const {
+    std::optional<Eigen::Vector3d> lowest;
+    const auto cell = raster_.find(place.x(), place.y());
+    if (!cell) return lowest;
+    raster_.around(*cell, [&](std::size_t near) {
+      if (near == but_for || chosen[near] == kNoLevel) return;
+      const Eigen::Vector3d site = cells_.place(near, chosen[near]);
+      if (!lowest || site.z() < lowest->z()) lowest = site;
+    });
+    return lowest;
   }
 
   /// How far below others a pit is: more than `rings` cells of ground fall with the gradient, for which a
@@ -148,7 +170,7 @@ class LevelChoice {
     for (std::int64_t rings = 1; rings < kMostRings; ++rings) {
       std::uint64_t ends = 0;
       raster_.around(
-          cell, [&](std::size_t near) { ends += cells_[near].count; }, rings);
+          cell, [&](std::size_t near) { ends += cells_.count(near); }, rings);
       if (ends >= kNeighbourhood) return rings;
     }
     return kMostRings;
@@ -157,15 +179,17 @@ class LevelChoice {
   [[nodiscard]] bool has_support(std::size_t cell, std::size_t i, std::int64_t rings) const {
     const auto reach =
         static_cast<std::int64_t>(std::ceil(static_cast<double>(rings) * window_ / cells_.level_height()));
+    const std::int64_t number = cells_.levels(cell)[i].number;
     std::uint64_t support = 0;
     std::uint64_t all = 0;
     raster_.around(
         cell,
         [&](std::size_t near) {
-          all += cells_[near].count;
-          for (const LowLevel& other : cells_[near].levels) {
-            const std::int64_t apart = std::int64_t{other.number} - cells_[cell].levels[i].number;
-            if (other.count > 0 && std::abs(apart) <= reach) support += other.count;
+          if (cells_.count(near) == 0) return;
+          all += cells_.count(near);
+          for (const LowLevel& other : cells_.levels(near)) {
+            if (other.count == 0) break;
+            if (std::abs(std::int64_t{other.number} - number) <= reach) support += other.count;
           }
         },
         rings);
@@ -187,7 +211,7 @@ std::vector<GroundSite> ground_sites(const Context& context, RaySource& source, 
   constexpr int kRounds = 3;  // pits beside pits
   const LowestEnds cells(context, source, raster);
   const LevelChoice choice(cells, gradient);
-  std::vector<std::size_t> chosen(raster.size());
+  std::vector<std::uint8_t> chosen(raster.size());
   const auto for_cells = [&](const auto& visit) {
     parallel_for(context, raster.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell)
@@ -197,9 +221,9 @@ std::vector<GroundSite> ground_sites(const Context& context, RaySource& source, 
   for_cells([&](std::size_t cell) { chosen[cell] = choice.lowest_supported(cell, 0); });
   std::vector<std::uint8_t> is_asked(raster.size(), 1);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<std::size_t> better = chosen;
+    std::vector<std::uint8_t> better = chosen;
     for_cells([&](std::size_t cell) {
-      if (is_asked[cell] != 0 && chosen[cell] < kLowLevels && choice.is_pit(cell, chosen))
+      if (is_asked[cell] != 0 && chosen[cell] != kNoLevel && choice.is_pit(cell, chosen))
         better[cell] = choice.lowest_supported(cell, chosen[cell] + 1);
     });
     // Next time those that have seen something change.
@@ -211,9 +235,11 @@ std::vector<GroundSite> ground_sites(const Context& context, RaySource& source, 
     }
     chosen = std::move(better);
   }
+  const std::vector<std::uint8_t> refuted =
+      sites_over_free_space(context, cells, chosen, choice.surely_below());
   std::vector<GroundSite> sites(raster.size());
   for_cells([&](std::size_t cell) {
-    if (chosen[cell] < kLowLevels) sites[cell] = choice.site(cell, chosen[cell]);
+    if (chosen[cell] != kNoLevel && refuted[cell] == 0) sites[cell] = choice.site(cell, chosen[cell]);
   });
   return sites;
 }

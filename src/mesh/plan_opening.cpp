@@ -7,7 +7,7 @@
 namespace ray {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr float kEmptyCell = std::numeric_limits<float>::infinity();
 constexpr std::size_t kLanes = 16;  // columns side by side
 
 /// For lines of `length` values, `lanes` of them interleaved: each value becomes the least within `radius` of
@@ -22,8 +22,8 @@ class RunningMinimum {
   [[nodiscard]] const float* minima() const { return least_.data(); }
 
   void run() {
-    std::fill_n(least_.begin(), radius_ * lanes_, kNone);
-    std::fill_n(least_.end() - static_cast<std::ptrdiff_t>(radius_ * lanes_), radius_ * lanes_, kNone);
+    std::fill_n(least_.begin(), radius_ * lanes_, kEmptyCell);
+    std::fill_n(least_.end() - static_cast<std::ptrdiff_t>(radius_ * lanes_), radius_ * lanes_, kEmptyCell);
     const std::size_t window = 2 * radius_ + 1;
     std::size_t width = 1;
     std::size_t valid = least_.size();
@@ -82,7 +82,7 @@ void erode(const Context& context, std::vector<float>& heights, const PlanRaster
 /// So that the highest become the lowest; where there is nothing there stays nothing.
 void turn_over(std::vector<float>& heights) {
   for (float& height : heights)
-    height = height == kNone ? kNone : -height;
+    height = height == kEmptyCell ? kEmptyCell : -height;
 }
 
 }  // namespace

@@ -9,11 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ray {
 namespace {
 
-constexpr std::int64_t kMostRings = 6;
+constexpr std::int64_t kWidestRings = 6;
 
 /// How many rings of cells around each site hold enough others to lay a plane through.
 std::vector<std::uint8_t> neighbourhoods(const Context& context, const std::vector<GroundSite>& sites,
@@ -23,7 +24,7 @@ std::vector<std::uint8_t> neighbourhoods(const Context& context, const std::vect
   parallel_for(context, sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       if (!sites[cell].is_there) continue;
-      for (; rings[cell] < kMostRings; ++rings[cell]) {
+      for (; rings[cell] < kWidestRings; ++rings[cell]) {
         int count = 0;
         raster.around(
             cell, [&](std::size_t near) { count += sites[near].is_there ? 1 : 0; }, rings[cell]);
@@ -39,7 +40,7 @@ std::vector<std::uint8_t> neighbourhoods(const Context& context, const std::vect
 std::vector<std::uint8_t> raised_sites(const Context& context, const std::vector<GroundSite>& sites,
                                        const PlanRaster& raster) {
   constexpr double kLeastStep = 0.1;  // m
-  constexpr double kSlope = 0.2;      // m for each m of the window's half width
+  constexpr double kSlope = 0.15;     // m for each m of the window's half width
   constexpr double kWidest = 30.0;    // m
   constexpr double kGrowth = 1.2;
   constexpr float kNone = std::numeric_limits<float>::infinity();
@@ -53,9 +54,11 @@ std::vector<std::uint8_t> raised_sites(const Context& context, const std::vector
     if (sites[i].is_there) heights[i] = static_cast<float>(sites[i].place.z() - base);
   const std::int64_t most =
       std::min(static_cast<std::int64_t>(kWidest / raster.width), std::max(raster.columns, raster.rows));
+  std::vector<float> opened(heights.size());
   std::int64_t radius = 1;
   while (radius <= most) {
-    const std::vector<float> opened = plan_opening(context, heights, raster, radius);
+    std::copy(heights.begin(), heights.end(), opened.begin());
+    opened = plan_opening(context, std::move(opened), raster, radius);
     const auto step = static_cast<float>(kLeastStep + kSlope * static_cast<double>(radius) * raster.width);
     parallel_for(context, sites.size(), 16384, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

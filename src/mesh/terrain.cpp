@@ -38,6 +38,11 @@ void survey_terrain(const Context& context, RaySource& source, TerrainSurvey& su
   survey.stream.rays_out = 0;
 }
 
+/// The nearest of four widths in each octave: a cloud with some rays more or less gets the same cells.
+double usual_width(double width) {
+  return std::exp2(std::round(4.0 * std::log2(width)) / 4.0);
+}
+
 /// Where the sample is but for one in a thousand on each side, and half as much again: an end that strayed
 /// hundreds of kilometres must not make the cells that wide.
 PlanRaster raster_over(const TerrainSurvey& survey) {
@@ -58,9 +63,10 @@ PlanRaster raster_over(const TerrainSurvey& survey) {
   }
   const double spacing = estimate_spacing(sample, survey.bounded).value;
   const double wide = std::min(kCellSpacings * spacing, std::max(spacing, kWideCell));
-  raster.width = std::max(
-      {wide, kLeastCell, std::sqrt(size.x() * size.y() / kMostCells), size.maxCoeff() / kMostCells * 2.0});
-  raster.low.array() -= 0.5 * raster.width;
+  raster.width = std::max({usual_width(std::max(wide, kLeastCell)),
+                           std::sqrt(size.x() * size.y() / kMostCells), size.maxCoeff() / kMostCells * 2.0});
+  const Eigen::Vector2d low = raster.low / raster.width;
+  raster.low = raster.width * low.array().floor().matrix();
   raster.columns = static_cast<std::int64_t>(size.x() / raster.width) + 2;
   raster.rows = static_cast<std::int64_t>(size.y() / raster.width) + 2;
   return raster;
@@ -106,7 +112,8 @@ Terrain extract_terrain(const Context& context, RaySource& source, const Terrain
   std::vector<GroundSite> sites = ground_sites(context, source, raster, options.gradient);
   keep_ground(context, sites, raster, options.gradient);
   source.rewind();
-  const std::vector<Eigen::Vector3d> ground = ground_heights(context, source, sites, raster);
+  const std::vector<Eigen::Vector3d> ground =
+      ground_heights(context, source, sites, raster, options.gradient);
   check_cancelled(context);
   Terrain terrain{.mesh = greedy_mesh(context, ground, options.tolerance, spread_evenly(ground, raster)),
                   .stream = survey.stream,
@@ -114,8 +121,9 @@ Terrain extract_terrain(const Context& context, RaySource& source, const Terrain
                   .cell = raster.width,
                   .heights = ground.size()};
   if (terrain.mesh.empty())
-    throw Error(ErrorCode::no_data,
-                "no ground is found: there are too few ends, or all on one line of the map");
+    throw Error(
+        ErrorCode::no_data,
+        "no ground is found: too few ends, all on one line of the map, or all steeper than the gradient");
   return terrain;
 }
 

@@ -199,6 +199,29 @@ TEST(Terrain, WhatIsBehindTheGroundIsNoPit) {
       EXPECT_NEAR(ground.at(x, y).height, 0.8 * x, 0.3) << x << ' ' << y;
 }
 
+TEST(Terrain, WhatRaysPassUnderIsNoGround) {
+  // An awning so low and wide that it might be a terrace. Nobody has seen the ground below it, but rays from
+  // a sensor that is lower still pass under it to the ground beyond.
+  const auto is_awning = [](const Vector& end) {
+    return std::abs(end.x() - 18) < 3 && std::abs(end.y() - 10) < 3;
+  };
+  RayCloud cloud = ends_over([](double) { return 0.0; }, 60'000);
+  for (Vector& end : cloud.ends)
+    if (is_awning(end)) end.z() += 0.5;
+  const auto highest = [&] {
+    const MeshHeight ground(terrain_of(cloud).mesh);
+    double height = 0.0;
+    for (double x = 15; x < 21; x += 0.5)
+      for (double y = 7; y < 13; y += 0.5)
+        height = std::max(height, ground.at(x, y).height);
+    return height;
+  };
+  EXPECT_GT(highest(), 0.45);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.ends[i].x() > 21) cloud.starts[i] = {-10, cloud.ends[i].y(), 0.3};
+  EXPECT_LT(highest(), 0.1);
+}
+
 TEST(Terrain, DependsOnNeitherThreadsNorChunks) {
   const RayCloud cloud = hillside({.false_returns = 0.001, .trees = true}, 8000);
   const Mesh one = terrain_of(cloud).mesh;
