@@ -15,7 +15,7 @@
 namespace ray {
 
 /// Over a ground, which covers a convex part of the plan once, a place is above or below it. Outside of the
-/// box around one closed surface a place is outside of that, too.
+/// box around one closed surface a place is outside of that, too; in it the faces above it tell.
 class KnownSide {
  public:
   /// `mesh` is oriented and stays; `sides` are its own.
@@ -25,18 +25,18 @@ class KnownSide {
         box_.add(mesh.vertices[vertex]);
     is_closed_ = topology.is_closed() && topology.components == 1;
     nearly_on_ = 1e-9 * (1.0 + box_.extent().norm() + box_.min.cwiseAbs().maxCoeff());
-    if (topology.is_disc() && looks_up(mesh) && is_convex(mesh, sides)) ground_.emplace(mesh);
+    if (is_closed_ || (topology.is_disc() && looks_up(mesh) && is_convex(mesh, sides))) faces_.emplace(mesh);
   }
 
   /// 1 in front of the mesh, -1 behind it; 0 where that has to be looked for.
   [[nodiscard]] int of(const Eigen::Vector3d& place) const {
     if (is_closed_) {
-      const bool is_beyond =
-          (place.array() < box_.min.array()).any() || (place.array() > box_.max.array()).any();
-      return is_beyond ? 1 : 0;
+      if ((place.array() < box_.min.array()).any() || (place.array() > box_.max.array()).any()) return 1;
+      const auto turns = faces_->turns_above(place, nearly_on_);
+      return !turns || *turns < 0 ? 0 : *turns > 0 ? -1 : 1;
     }
-    if (!ground_) return 0;
-    const auto height = ground_->highest(place.head<2>());
+    if (!faces_) return 0;
+    const auto height = faces_->highest(place.head<2>());
     if (!height || std::abs(place.z() - *height) <= nearly_on_) return 0;
     return place.z() > *height ? 1 : -1;
   }
@@ -75,7 +75,7 @@ class KnownSide {
   Bounds box_;
   bool is_closed_ = false;
   double nearly_on_ = 0.0;
-  std::optional<PlanHeights> ground_;
+  std::optional<PlanHeights> faces_;
 };
 
 }  // namespace ray

@@ -5,6 +5,8 @@
 
 #include <raycloud/core/mesh.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace ray {
@@ -52,6 +54,30 @@ class PlanHeights {
       if (height && (!highest || *height > *highest)) highest = height;
     }
     return highest;
+  }
+
+  /// Of the faces above the place, those that show it their backs, less those that show it their fronts: 0
+  /// outside of a closed surface, 1 inside. Nothing where the place is as near as `nearly` (m) to one, or to
+  /// the plan of a side.
+  [[nodiscard]] std::optional<int> turns_above(const Eigen::Vector3d& place, double nearly) const {
+    int turns = 0;
+    for (const std::uint32_t item : grid_.at(place.head<2>())) {
+      const Mesh::Face& face = mesh_.faces[item];
+      const Eigen::Vector3d& a = mesh_.vertices[face[0]];
+      const Eigen::Vector3d& b = mesh_.vertices[face[1]];
+      const Eigen::Vector3d& c = mesh_.vertices[face[2]];
+      const double of_a = plan_side(b.head<2>(), c.head<2>(), place.head<2>());
+      const double of_b = plan_side(c.head<2>(), a.head<2>(), place.head<2>());
+      const double of_c = plan_side(a.head<2>(), b.head<2>(), place.head<2>());
+      const auto [least, most] = std::minmax({of_a, of_b, of_c});
+      const double rim = nearly * ((b - a).head<2>().lpNorm<1>() + (c - a).head<2>().lpNorm<1>());
+      if (least < -rim && most > rim) continue;
+      if (least <= rim && most >= -rim) return std::nullopt;
+      const double height = (of_a * a.z() + of_b * b.z() + of_c * c.z()) / (of_a + of_b + of_c);
+      if (std::abs(height - place.z()) <= nearly) return std::nullopt;
+      if (height > place.z()) turns += least > 0.0 ? 1 : -1;
+    }
+    return turns;
   }
 
  private:
