@@ -150,6 +150,7 @@ void print_terrain() {
   print_case({SceneKind::terrain, 0, 0.01, 1.0, 0.04});
   print_case({SceneKind::terrain, 0, 0.0005, 2.0, 0.04});
   print_case({SceneKind::terrain, 20, 0.0005, 1.0, 0.04});
+  print_case({SceneKind::terrain, 30, 0.0005, 2.0, 0.06});
   print_case({SceneKind::terrain, 50, 0.0005, 2.5, 0.06});
   print_case({SceneKind::forest, 0, 0.0, 1.0, 0.04});
   print_case({SceneKind::forest, 0, 0.0005, 1.0, 0.04});
