@@ -26,11 +26,16 @@ void print_all_transients() {
   bench::print_transients();
 }
 
+void print_all_terrain() {
+  bench::print_terrain();
+  bench::print_ground_samples();
+}
+
 constexpr std::array kTopics{
     Topic{"normals", bench::print_normals},  Topic{"smoothing", bench::print_smoothing},
     Topic{"denoising", print_all_denoising}, Topic{"transients", print_all_transients},
     Topic{"merging", bench::print_merging},  Topic{"alignment", bench::print_alignment},
-    Topic{"terrain", bench::print_terrain}};
+    Topic{"terrain", print_all_terrain}};
 
 }  // namespace
 

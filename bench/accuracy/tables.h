@@ -16,6 +16,7 @@ void print_opacity();
 void print_merging();
 void print_alignment();
 void print_terrain();
+void print_ground_samples();
 
 /// The last cells of a row.
 [[nodiscard]] inline std::string verdict(const std::string& bar, bool met) {

@@ -149,12 +149,18 @@ void print_terrain() {
   print_case({SceneKind::terrain, 0, 0.0005, 1.0, 0.04});
   print_case({SceneKind::terrain, 0, 0.01, 1.0, 0.04});
   print_case({SceneKind::terrain, 0, 0.0005, 2.0, 0.04});
+  print_case({SceneKind::terrain, 20, 0.0005, 1.0, 0.04});
+  print_case({SceneKind::terrain, 30, 0.0005, 2.0, 0.06});
+  print_case({SceneKind::terrain, 50, 0.0005, 2.5, 0.06});
   print_case({SceneKind::forest, 0, 0.0, 1.0, 0.04});
   print_case({SceneKind::forest, 0, 0.0005, 1.0, 0.04});
   print_case({SceneKind::forest, 30, 0.0005, 1.0, 0.04});
-  print_case({SceneKind::field, 0, 0.0005, 1.0, 0.04});
+  print_case({SceneKind::forest, 30, 0.01, 1.0, 0.04});
   print_case({SceneKind::forest, 50, 0.0005, 2.5, 0.06});
+  print_case({SceneKind::forest, 50, 0.01, 2.5, 0.06});
   print_case({SceneKind::forest, 60, 0.0005, 4.0, 0.06});
+  print_case({SceneKind::field, 0, 0.0005, 1.0, 0.04});
+  print_case({SceneKind::field, 50, 0.0005, 2.5, 0.06});
 }
 
 }  // namespace bench

@@ -1,3 +1,4 @@
+#include "deflate.h"
 #include "file_kind.h"
 #include "rgbe.h"
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -103,6 +105,20 @@ bool encode(ImageFormat format, const Image& image, Output& output) {
 }
 
 }  // namespace
+
+// Here, as this file has stb's compressor.
+std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
+  constexpr int kEffort = 8;
+  std::vector<std::byte> copy(bytes.begin(), bytes.end());  // stb takes no const
+  int size = 0;
+  unsigned char* stream = stbi_zlib_compress(reinterpret_cast<unsigned char*>(copy.data()),
+                                             static_cast<int>(copy.size()), &size, kEffort);
+  if (stream == nullptr) throw std::bad_alloc();
+  const auto* begin = reinterpret_cast<const std::byte*>(stream);
+  const auto free_stream = [](unsigned char* block) { std::free(block); };
+  const std::unique_ptr<unsigned char, decltype(free_stream)> owner(stream, free_stream);
+  return {begin, begin + size};
+}
 
 ImageFormat image_format(const std::filesystem::path& path) {
   const std::string extension = known_extension(path, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".hdr"});

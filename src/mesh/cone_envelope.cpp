@@ -1,3 +1,4 @@
+#include <raycloud/exec/parallel.h>
 #include <raycloud/mesh/cone_envelope.h>
 
 #include <algorithm>
@@ -24,11 +25,10 @@ class LowestTree {
     while (count > 0) {
       const Node& node = nodes_[waiting[--count]];
       const Eigen::Vector2d place = p.head<2>();
-      const double away = (node.low - place).cwiseMax(place - node.high).cwiseMax(0.0).norm();
+      const double squared = (node.low - place).cwiseMax(place - node.high).cwiseMax(0.0).squaredNorm();
       // Rounding must not hide a point.
-      if (node.lowest + gradient * away * (1.0 - 1e-14) >
-          p.z() + 1e-14 * (std::abs(p.z()) + std::abs(node.lowest)))
-        continue;
+      const double room = p.z() - node.lowest + 1e-14 * (std::abs(p.z()) + std::abs(node.lowest));
+      if (room < 0.0 || gradient * gradient * squared * (1.0 - 1e-14) > room * room) continue;
       if (node.end - node.begin > kLeaf) {
         // The half that is nearer is looked at first.
         const Node& first = nodes_[node.first];
@@ -40,7 +40,7 @@ class LowestTree {
       }
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
         const Eigen::Vector3d& q = points_[order_[i]];
-        if (q.z() + gradient * (q - p).head<2>().norm() < p.z()) return true;
+        if (q.z() < p.z() && q.z() + gradient * (q - p).head<2>().norm() < p.z()) return true;
       }
     }
     return false;
@@ -89,12 +89,15 @@ class LowestTree {
 
 }  // namespace
 
-std::vector<std::uint8_t> cone_envelope(std::span<const Eigen::Vector3d> points, double gradient) {
+std::vector<std::uint8_t> cone_envelope(const Context& context, std::span<const Eigen::Vector3d> points,
+                                        double gradient) {
   std::vector<std::uint8_t> ground(points.size(), 0);
   if (points.empty()) return ground;
   const LowestTree tree(points);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
+  parallel_for(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
+  });
   return ground;
 }
 

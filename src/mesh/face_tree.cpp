@@ -108,12 +108,12 @@ std::uint32_t FaceTree::build(std::uint32_t begin, std::uint32_t end,
 
 /// One point's search: the best so far, and how near in single precision a box must be to matter.
 struct FaceTree::Search {
-  Search(const FaceTree& tree, const Eigen::Vector3d& at, std::uint32_t near)
+  Search(const FaceTree& tree, const Eigen::Vector3d& at, double most)
       : point(at), local((at - tree.centre_).cast<float>()) {
     const double largest = (at - tree.centre_).cwiseAbs().maxCoeff() + tree.half_size_;
     slack = kSingleStep * largest;
-    const Corners& corners = tree.faces_[tree.places_[near]].corners;
-    best = {nearest_on_face(point, corners, std::numeric_limits<double>::infinity()), near};
+    best.nearest.squared = most;
+    best.face = kNoFace;
     set_reach();
   }
 
@@ -159,8 +159,22 @@ struct FaceTree::Search {
   NearestFace best;
 };
 
-NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, double enough) const {
-  Search search(*this, point, near);
+NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near) const {
+  Search search(*this, point, std::numeric_limits<double>::infinity());
+  search.look_at(faces_[places_[near]]);
+  run(search, -1.0);
+  return search.best;
+}
+
+NearestFace FaceTree::find_within(const Eigen::Vector3d& point, std::uint32_t near, double most,
+                                  double enough) const {
+  Search search(*this, point, most);
+  if (near != kNoFace) search.look_at(faces_[places_[near]]);
+  run(search, enough);
+  return search.best;
+}
+
+void FaceTree::run(Search& search, double enough) const {
   struct Waiting {
     std::uint32_t child = 0;
     float squared = 0.0f;
@@ -168,7 +182,7 @@ NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, dou
   std::array<Waiting, 64> waiting;  // three of each level stay, and 2^31 faces are 16 levels
   std::size_t count = 0;
   waiting[count++] = {0, 0.0f};
-  while (count > 0 && search.best.nearest.squared >= enough) {
+  while (count > 0 && !(search.best.face != kNoFace && search.best.nearest.squared < enough)) {
     const Waiting next = waiting[--count];
     if (!(next.squared <= search.reach)) continue;
     if ((next.child & kFaceBit) != 0) {
@@ -186,7 +200,6 @@ NearestFace FaceTree::find(const Eigen::Vector3d& point, std::uint32_t near, dou
       waiting[at] = {node.child[i], squared[i]};
     }
   }
-  return search.best;
 }
 
 }  // namespace ray

@@ -26,11 +26,16 @@ class FaceTree {
   /// faces.
   explicit FaceTree(const Mesh& mesh);
 
-  /// The nearest face, of several at the same distance the first; or any face whose squared distance is less
-  /// than `enough`. `near` is what was found for a point that may be near: a better one is quicker, and the
-  /// result is the same.
-  [[nodiscard]] NearestFace find(const Eigen::Vector3d& point, std::uint32_t near,
-                                 double enough = -1.0) const;
+  static constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;
+
+  /// The nearest face, of several at the same distance the first. `near` is what was found for a point that
+  /// may be near: a better one is quicker, and the result is the same.
+  [[nodiscard]] NearestFace find(const Eigen::Vector3d& point, std::uint32_t near) const;
+
+  /// The same among faces at a squared distance up to `most`: kNoFace if there is none; or any face whose
+  /// squared distance is less than `enough`. The quicker the smaller `most` is. `near` may be kNoFace.
+  [[nodiscard]] NearestFace find_within(const Eigen::Vector3d& point, std::uint32_t near, double most,
+                                        double enough) const;
 
  private:
   static constexpr std::size_t kWide = 4;
@@ -49,6 +54,7 @@ class FaceTree {
     double spread = 0.0;  ///< m²; a third of the square of the longest side
   };
   struct Search;
+  void run(Search& search, double enough) const;
 
   /// Makes the node of faces [begin, end) and returns its place; `bounds` gets what it holds.
   std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3d>& centres,

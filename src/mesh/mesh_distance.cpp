@@ -1,5 +1,6 @@
 #include "edges.h"
 #include "face_tree.h"
+#include "known_side.h"
 #include "orient.h"
 
 #include <raycloud/mesh/mesh_distance.h>
@@ -66,6 +67,7 @@ struct MeshDistance::Impl {
         without_area(faces_left_out),
         topology(count_topology(mesh, oriented.sides)),
         normals(pseudo_normals(mesh, oriented.sides)),
+        known_side(mesh, oriented.sides, topology),
         tree(mesh) {}
 
   [[nodiscard]] const Eigen::Vector3d& normal_at(const NearestFace& found) const {
@@ -75,16 +77,39 @@ struct MeshDistance::Impl {
     return normals.of_vertex[mesh.faces[found.face][part]];
   }
 
-  [[nodiscard]] double signed_distance(const Eigen::Vector3d& point, const NearestFace& found) const {
-    const double side = (point - found.nearest.place).dot(normal_at(found));
+  /// `known` is known_side.of(point).
+  [[nodiscard]] double signed_distance(const Eigen::Vector3d& point, const NearestFace& found,
+                                       int known) const {
     const double distance = std::sqrt(found.nearest.squared);
-    return side < 0.0 ? -distance : distance;
+    if (known != 0) return known < 0 ? -distance : distance;
+    return (point - found.nearest.place).dot(normal_at(found)) < 0.0 ? -distance : distance;
+  }
+
+  /// Whether signed_distance > distance; `near` is the face found for the point before, and becomes this
+  /// one's.
+  [[nodiscard]] bool is_beyond(const Eigen::Vector3d& point, double distance, std::uint32_t& near) const {
+    // Something surely within the distance decides, whichever side it is on.
+    const double within = distance * distance * (1.0 - 1e-14);
+    const double perhaps_within = distance * distance * (1.0 + 1e-14);
+    NearestFace found = tree.find_within(point, near, perhaps_within, within);
+    if (found.nearest.squared < within) {
+      near = found.face;
+      return distance < 0.0;
+    }
+    const int known = known_side.of(point);
+    if (found.face == FaceTree::kNoFace) {
+      if (known != 0) return known > 0;
+      found = tree.find(point, near);
+    }
+    near = found.face;
+    return signed_distance(point, found, known) > distance;
   }
 
   Mesh mesh;
   std::size_t without_area;
   MeshTopology topology;
   PseudoNormals normals;
+  KnownSide known_side;
   FaceTree tree;
 };
 
@@ -100,22 +125,16 @@ std::vector<double> MeshDistance::at(std::span<const Eigen::Vector3d> points) co
   for (const Eigen::Vector3d& point : points) {
     const NearestFace found = impl_->tree.find(point, near);
     near = found.face;
-    distances.push_back(impl_->signed_distance(point, found));
+    distances.push_back(impl_->signed_distance(point, found, impl_->known_side.of(point)));
   }
   return distances;
 }
 
 void MeshDistance::are_beyond(std::span<const Eigen::Vector3d> points, double distance,
                               std::span<std::uint8_t> beyond) const {
-  // Something surely within the distance decides, whichever side it is on.
-  const double within = distance * distance * (1.0 - 1e-14);
   std::uint32_t near = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const NearestFace found = impl_->tree.find(points[i], near, within);
-    near = found.face;
-    const bool is_within = found.nearest.squared < within;
-    beyond[i] = (is_within ? distance < 0.0 : impl_->signed_distance(points[i], found) > distance) ? 1 : 0;
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    beyond[i] = impl_->is_beyond(points[i], distance, near) ? 1 : 0;
 }
 
 const Mesh& MeshDistance::mesh() const {

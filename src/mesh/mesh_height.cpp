@@ -1,11 +1,10 @@
 #include "edges.h"
-#include "plan_grid.h"
+#include "plan_heights.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/mesh/mesh_height.h>
 #include <raycloud/mesh/weld.h>
 
-#include <optional>
 #include <utility>
 
 namespace ray {
@@ -15,30 +14,6 @@ using Plan = Eigen::Vector2d;
 
 Plan plan(const Eigen::Vector3d& point) {
   return point.head<2>();
-}
-
-/// Twice the signed area of a, b and p; exactly opposite when a and b change places, so that two faces which
-/// share a side agree on which of them has the point.
-double side_of(const Plan& a, const Plan& b, const Plan& p) {
-  return (a.x() - p.x()) * (b.y() - p.y()) - (b.x() - p.x()) * (a.y() - p.y());
-}
-
-double plan_area(const Mesh& mesh, const Mesh::Face& face) {
-  return side_of(plan(mesh.vertices[face[0]]), plan(mesh.vertices[face[1]]), plan(mesh.vertices[face[2]]));
-}
-
-std::optional<double> height_of_face(const Mesh& mesh, const Mesh::Face& face, const Plan& p) {
-  const Eigen::Vector3d& a = mesh.vertices[face[0]];
-  const Eigen::Vector3d& b = mesh.vertices[face[1]];
-  const Eigen::Vector3d& c = mesh.vertices[face[2]];
-  const double of_a = side_of(plan(b), plan(c), p);
-  const double of_b = side_of(plan(c), plan(a), p);
-  const double of_c = side_of(plan(a), plan(b), p);
-  const bool anticlockwise = of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0;
-  const bool clockwise = of_a <= 0.0 && of_b <= 0.0 && of_c <= 0.0;
-  const double sum = of_a + of_b + of_c;
-  if ((!anticlockwise && !clockwise) || sum == 0.0) return std::nullopt;
-  return (of_a * a.z() + of_b * b.z() + of_c * c.z()) / sum;
 }
 
 /// Edges with faces on one side only, seen from above.
@@ -61,14 +36,6 @@ Mesh seen_from_above(Mesh mesh) {
   return mesh;
 }
 
-PlanGrid grid_of_faces(const Mesh& mesh) {
-  std::vector<PlanShape> shapes;
-  for (const Mesh::Face& face : mesh.faces)
-    shapes.push_back(
-        {plan(mesh.vertices[face[0]]), plan(mesh.vertices[face[1]]), plan(mesh.vertices[face[2]])});
-  return PlanGrid(shapes);
-}
-
 PlanGrid grid_of_rims(const Mesh& mesh, const std::vector<FaceSide>& rims) {
   std::vector<PlanShape> shapes;
   for (const FaceSide& rim : rims) {
@@ -85,7 +52,7 @@ struct MeshHeight::Impl {
       : without_area(welded.without_area),
         mesh(seen_from_above(std::move(welded.mesh))),
         rims(rims_of(mesh)),
-        faces_at(grid_of_faces(mesh)),
+        heights(mesh),
         rims_at(grid_of_rims(mesh, rims)) {}
 
   [[nodiscard]] double nearest_rim(const Plan& place) const {
@@ -110,7 +77,7 @@ struct MeshHeight::Impl {
   std::size_t without_area;
   Mesh mesh;
   std::vector<FaceSide> rims;
-  PlanGrid faces_at;
+  PlanHeights heights;
   PlanGrid rims_at;
 };
 
@@ -121,12 +88,7 @@ MeshHeight& MeshHeight::operator=(MeshHeight&&) noexcept = default;
 
 HeightAt MeshHeight::at(double x, double y) const {
   const Plan place(x, y);
-  std::optional<double> highest;
-  for (const std::uint32_t item : impl_->faces_at.at(place)) {
-    const auto height = height_of_face(impl_->mesh, impl_->mesh.faces[item], place);
-    if (height && (!highest || *height > *highest)) highest = height;
-  }
-  if (highest) return {*highest, false};
+  if (const auto highest = impl_->heights.highest(place)) return {*highest, false};
   return {impl_->nearest_rim(place), true};
 }
 

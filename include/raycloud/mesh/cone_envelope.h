@@ -1,6 +1,8 @@
 #pragma once
 /// Which points are ground at all: those with nothing below them in a cone.
 
+#include <raycloud/exec/context.h>
+
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
@@ -13,7 +15,8 @@ namespace ray {
 /// steeper than the gradient. Exactly what comparing all pairs gives, to the bit; expected O(n log n), as
 /// cones of points that are near each other decide nearly all. 60 bytes a point.
 /// Precondition: finite points, gradient ≥ 0.
-[[nodiscard]] std::vector<std::uint8_t> cone_envelope(std::span<const Eigen::Vector3d> points,
+[[nodiscard]] std::vector<std::uint8_t> cone_envelope(const Context& context,
+                                                      std::span<const Eigen::Vector3d> points,
                                                       double gradient);
 
 }  // namespace ray

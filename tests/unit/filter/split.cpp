@@ -55,21 +55,20 @@ void expect_on_side(const RayCloud& pieces, const Region& region, double sign) {
 
 RC_GTEST_PROP(SplitByRegion, PiecesAreOnTheirSideAndTheLawHolds, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
-  const RayCloud cloud = numbered_cloud(seed, *rc::gen::inRange<std::size_t>(0, 120));
-  for (const Precision stored : {Precision::single, Precision::double_}) {
-    for (const Region& region : regions(stored)) {
-      const Halves halves = split(cloud, *region.rule);
-      expect_on_side(halves.inside, region, 1.0);
-      expect_on_side(halves.outside, region, -1.0);
-      const RayCloud all = together({halves.inside, halves.outside});
-      RC_ASSERT(lines_of(all, true) == lines_of(cloud, true));
-      // A cut rounded to float is off the line by that.
-      const double rounding = stored == Precision::single ? 1e-6 : 1e-12;
-      RC_ASSERT(std::abs(total_length(all) - total_length(cloud)) <
-                rounding * (1.0 + 100.0 * static_cast<double>(cloud.size())));
-      RC_ASSERT(halves.counts.inside == halves.inside.size());
-      RC_ASSERT(halves.counts.outside == halves.outside.size());
-    }
+  const RayCloud cloud = numbered_cloud(seed, *rc::gen::inRange<std::size_t>(0, 40));
+  const auto stored = *rc::gen::element(Precision::single, Precision::double_);
+  for (const Region& region : regions(stored)) {
+    const Halves halves = split(cloud, *region.rule);
+    expect_on_side(halves.inside, region, 1.0);
+    expect_on_side(halves.outside, region, -1.0);
+    const RayCloud all = together({halves.inside, halves.outside});
+    RC_ASSERT(lines_of(all, true) == lines_of(cloud, true));
+    // A cut rounded to float is off the line by that.
+    const double rounding = stored == Precision::single ? 1e-6 : 1e-12;
+    RC_ASSERT(std::abs(total_length(all) - total_length(cloud)) <
+              rounding * (1.0 + 100.0 * static_cast<double>(cloud.size())));
+    RC_ASSERT(halves.counts.inside == halves.inside.size());
+    RC_ASSERT(halves.counts.outside == halves.outside.size());
   }
 }
 

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 
 namespace ray {
@@ -114,6 +116,43 @@ TEST(MeshDistance, IsPositiveAboveAGroundWhicheverWayItsFacesLook) {
     EXPECT_EQ(flat.at({-3, 1, 4}), 5);
     EXPECT_EQ(flat.at({-3, 1, -4}), -5);
     EXPECT_EQ(flat.at({1, 1, 0}), 0);
+  }
+}
+
+RC_GTEST_PROP(MeshDistance, OverAGroundIsThatOfASlowOracle, ()) {
+  // Above or below, near it and far, over it and beside: also where the ground is not convex in plan.
+  const RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), "grounds");
+  const Vector away = *rc::gen::element(Vector(0, 0, 0), Vector(5e5, 5e6, 100));
+  Mesh ground = ground_shape(5, [&](int x, int y) { return 2 * random.uniform(x, y); });
+  if (*rc::gen::arbitrary<bool>()) ground.faces.erase(ground.faces.begin(), ground.faces.begin() + 2);
+  for (Vector& vertex : ground.vertices)
+    vertex += away;
+  const MeshDistance distance(ground);
+  std::vector<Vector> places = places_near(ground, random, 40);
+  for (std::size_t i = 0; i < places.size(); i += 4)
+    places[i] += Vector(0, 0, 30 * (random.uniform(i, 30) - 0.5));
+  const std::vector<double> found = distance.at(places);
+  const double rounding = 1e-12 + 1e-15 * away.norm();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double slow = slow_distance(places[i], ground);
+    RC_ASSERT(std::abs(std::abs(found[i]) - slow) < rounding);
+    // Straight above or below a face the side is plain.
+    for (const auto& [a, b, c] : ground.faces) {
+      const Vector &u = ground.vertices[a], &v = ground.vertices[b], &w = ground.vertices[c];
+      Eigen::Matrix3d corners;
+      corners << u, v, w;
+      corners.row(2).setOnes();
+      const Vector weights = corners.fullPivLu().solve(Vector(places[i].x(), places[i].y(), 1));
+      const double height = weights.dot(Vector(u.z(), v.z(), w.z()));
+      if (away.norm() == 0 && weights.minCoeff() > 1e-6 && std::abs(places[i].z() - height) > 1e-6)
+        RC_ASSERT((found[i] > 0) == (places[i].z() > height));
+    }
+  }
+  for (const double limit : {-0.5, -0.01, 0.0, 0.01, 0.5, found[7], 1e9}) {
+    std::vector<std::uint8_t> beyond(places.size());
+    distance.are_beyond(places, limit, beyond);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      RC_ASSERT((beyond[i] == 1) == (found[i] > limit));
   }
 }
 

@@ -1,3 +1,4 @@
+#include "mesh/plan_opening.h"
 #include "shapes.h"
 
 #include <raycloud/core/error.h>
@@ -11,6 +12,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 
 namespace ray {
 namespace {
@@ -28,7 +31,7 @@ RC_GTEST_PROP(ConeEnvelope, IsWhatAllPairsSay, ()) {
     if (on_grid) point = point.array().round();
     points.push_back(point);
   }
-  const auto found = cone_envelope(points, gradient);
+  const auto found = cone_envelope({}, points, gradient);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector& p = points[i];
     const bool above = std::any_of(points.begin(), points.end(), [&](const Vector& q) {
@@ -36,6 +39,32 @@ RC_GTEST_PROP(ConeEnvelope, IsWhatAllPairsSay, ()) {
     });
     RC_ASSERT((found[i] == 0) == above);
   }
+}
+
+RC_GTEST_PROP(PlanOpening, IsWhatLookingAtEveryWindowSays, ()) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  const RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), "openings");
+  const PlanRaster raster{.columns = *rc::gen::inRange(1, 40), .rows = *rc::gen::inRange(1, 20)};
+  const std::int64_t radius = *rc::gen::inRange(1, 12);
+  std::vector<float> heights;
+  for (std::size_t i = 0; i < raster.size(); ++i)
+    heights.push_back(random.below(4, i) == 0 ? kNone : static_cast<float>(random.uniform(i, 1)));
+  const auto at_every_cell = [&](const std::vector<float>& from, bool lowest) {
+    std::vector<float> found(from.size(), kNone);
+    for (std::size_t cell = 0; cell < from.size(); ++cell) {
+      raster.around(
+          cell,
+          [&](std::size_t near) {
+            if (from[near] == kNone) return;
+            const bool is_better = found[cell] == kNone || (from[near] < found[cell]) == lowest;
+            if (is_better) found[cell] = from[near];
+          },
+          radius);
+    }
+    return found;
+  };
+  const std::vector<float> slow = at_every_cell(at_every_cell(heights, true), false);
+  RC_ASSERT(plan_opening({.threads = 2}, heights, raster, radius) == slow);
 }
 
 /// Normal numbers, nearly.
@@ -125,6 +154,72 @@ TEST(Terrain, HousesAndTreesAreTakenOff) {
   EXPECT_LT(trees.root_mean_square, 0.03);
   EXPECT_LT(trees.worst, 0.3);
   EXPECT_LT(errors_of(terrain_of(hillside({.box = true})).mesh).worst, 1.5);  // the hill under it is not seen
+}
+
+/// Ends of a height that depends on x, in 40 m by 20 m.
+RayCloud ends_over(const std::function<double(double)>& height, std::size_t rays) {
+  const RandomStream random(4, "steps");
+  RayCloud cloud;
+  cloud.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const double x = 40 * random.uniform(i, 0);
+    cloud.ends[i] = {x, 20 * random.uniform(i, 1), height(x) + 0.01 * noise(random, i)};
+    cloud.starts[i] = cloud.ends[i] + Vector(0, 0, 50);
+    cloud.bounded[i] = 1;
+  }
+  return cloud;
+}
+
+TEST(Terrain, ATerraceIsGroundUpToItsStepAndAHallIsNot) {
+  // The cone alone would cut 2 m off the upper ground.
+  const MeshHeight terrace(
+      terrain_of(ends_over([](double x) { return 0.1 * x + (x > 20 ? 2 : 0); }, 20'000)).mesh);
+  for (double x = 2; x < 39; x += 0.5) {
+    if (std::abs(x - 20) < 0.6) continue;
+    EXPECT_NEAR(terrace.at(x, 10).height, 0.1 * x + (x > 20 ? 2 : 0), 0.1) << x;
+  }
+  const MeshHeight hall(
+      terrain_of(ends_over([](double x) { return 0.1 * x + (x > 8 && x < 32 ? 6 : 0); }, 20'000)).mesh);
+  for (double x = 1; x < 39; x += 0.5)
+    EXPECT_NEAR(hall.at(x, 10).height, 0.1 * x, 0.15) << x;
+}
+
+TEST(Terrain, WhatIsBehindTheGroundIsNoPit) {
+  // A hillside seen from its foot. Three rays in a hundred come back late, so many that they have company.
+  const RandomStream random(5, "late");
+  RayCloud cloud = ends_over([](double x) { return 0.8 * x; }, 20'000);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.starts[i] = {-10, 10, 2};
+    if (random.uniform(i) < 0.03)
+      cloud.ends[i] += (1 + 3 * random.uniform(i, 1)) * (cloud.ends[i] - cloud.starts[i]).normalized();
+  }
+  const MeshHeight ground(terrain_of(cloud).mesh);
+  for (double x = 2; x < 38; x += 0.25)
+    for (double y = 2; y < 18; y += 0.25)
+      EXPECT_NEAR(ground.at(x, y).height, 0.8 * x, 0.3) << x << ' ' << y;
+}
+
+TEST(Terrain, WhatRaysPassUnderIsNoGround) {
+  // An awning so low and wide that it might be a terrace. Nobody has seen the ground below it, but rays from
+  // a sensor that is lower still pass under it to the ground beyond.
+  const auto is_awning = [](const Vector& end) {
+    return std::abs(end.x() - 18) < 3 && std::abs(end.y() - 10) < 3;
+  };
+  RayCloud cloud = ends_over([](double) { return 0.0; }, 60'000);
+  for (Vector& end : cloud.ends)
+    if (is_awning(end)) end.z() += 0.5;
+  const auto highest = [&] {
+    const MeshHeight ground(terrain_of(cloud).mesh);
+    double height = 0.0;
+    for (double x = 15; x < 21; x += 0.5)
+      for (double y = 7; y < 13; y += 0.5)
+        height = std::max(height, ground.at(x, y).height);
+    return height;
+  };
+  EXPECT_GT(highest(), 0.45);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.ends[i].x() > 21) cloud.starts[i] = {-10, cloud.ends[i].y(), 0.3};
+  EXPECT_LT(highest(), 0.1);
 }
 
 TEST(Terrain, DependsOnNeitherThreadsNorChunks) {
