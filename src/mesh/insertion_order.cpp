@@ -13,7 +13,7 @@ constexpr int kCurveBits = 20;  // of each coordinate; what is nearer may come i
 
 /// Place along the curve of Hilbert (Skilling, "Programming the Hilbert curve", 2004).
 template <std::size_t N>
-std::uint64_t place_on_curve(std::array<std::uint32_t, N> x) {
+std::uint64_t curve_place(std::array<std::uint32_t, N> x) {
   for (std::uint32_t& coordinate : x)
     coordinate >>= 31 - kCurveBits;
   for (std::uint32_t q = 1u << (kCurveBits - 1); q > 1; q >>= 1) {
@@ -53,7 +53,7 @@ std::vector<std::uint32_t> order_of(const std::vector<std::array<std::uint32_t, 
   std::vector<Key> keys(points.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
     const int late = std::countl_zero(random.bits(i) | 1);  // half of the points come in the last round
-    keys[i] = {place_on_curve<N>(points[i]), static_cast<std::uint32_t>(std::max(0, rounds - late)), i};
+    keys[i] = {curve_place<N>(points[i]), static_cast<std::uint32_t>(std::max(0, rounds - late)), i};
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.round, a.place, a.index) < std::tie(b.round, b.place, b.index);
@@ -65,6 +65,10 @@ std::vector<std::uint32_t> order_of(const std::vector<std::array<std::uint32_t, 
 }
 
 }  // namespace
+
+std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& point) {
+  return curve_place<3>(point);
+}
 
 std::vector<std::uint32_t> insertion_order(const std::vector<std::array<std::uint32_t, 2>>& points) {
   return order_of(points);

@@ -1,6 +1,8 @@
 // Wraps against slow ones that share no code with them, and what every wrap must be: a disc or a sphere with
 // all ends on the right side.
 #include "shapes.h"
+#include "slow_hull.h"
+#include "wrapped_points.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/core/memory_stream.h>
@@ -22,80 +24,10 @@ namespace {
 using namespace test;
 using Vector = Eigen::Vector3d;
 
-RayCloud cloud_of(const std::vector<Vector>& ends, const Vector& start = Vector::Zero()) {
-  RayCloud cloud;
-  cloud.resize(ends.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    cloud.ends[i] = ends[i];
-    cloud.starts[i] = start;
-    cloud.times[i] = 0;
-    cloud.bounded[i] = 1;
-  }
-  return cloud;
-}
-
 Wrap wrapped(const RayCloud& cloud, WrapDirection direction, double curvature, std::size_t chunk = 1000,
              const Context& context = {.threads = 1}) {
   MemorySource source(cloud, chunk);
   return wrap(context, source, direction, curvature);
-}
-
-/// Hills, with things on them.
-std::vector<Vector> rough_points(std::uint64_t seed, std::size_t count, double size) {
-  const RandomStream random(seed, "rough");
-  std::vector<Vector> points;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    Vector point = random_place(random, i, size);
-    point.z() = 0.2 * size * std::sin(4 * point.x() / size) * std::cos(3 * point.y() / size) +
-                0.2 * size * std::pow(random.uniform(i, 9), 4);
-    points.push_back(point);
-  }
-  return points;
-}
-
-/// The points of the lower hull by wrapping a sheet around them, edge by edge, trying all points for each.
-/// Points in general position.
-std::set<std::size_t> slow_lower_hull(const std::vector<Vector>& points) {
-  using Edge = std::pair<std::size_t, std::size_t>;
-  const auto turn = [&](std::size_t a, std::size_t b, std::size_t p) {
-    const Vector u = points[b] - points[a], v = points[p] - points[a];
-    return u.x() * v.y() - u.y() * v.x();
-  };
-  const auto below = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t p) {
-    return (points[b] - points[a]).cross(points[c] - points[a]).dot(points[p] - points[a]) < 0;
-  };
-  std::vector<Edge> open;
-  const auto least = [&](std::size_t a, std::size_t b) { return points[a].x() < points[b].x() ? a : b; };
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    first = least(first, i);
-  std::size_t from = first;
-  do {  // around the border of the plan
-    std::size_t to = from == 0 ? 1 : 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (i != from && turn(from, to, i) < 0) to = i;
-    open.emplace_back(from, to);
-    from = to;
-  } while (from != first);
-  std::set<std::size_t> hull;
-  std::set<Edge> done;
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    if (!done.insert({a, b}).second) continue;
-    std::size_t c = points.size();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i == a || i == b || turn(a, b, i) <= 0) continue;
-      if (c == points.size() || below(a, b, c, i)) c = i;
-    }
-    if (c == points.size()) continue;  // the border
-    hull.insert({a, b, c});
-    for (const Edge& side : {Edge{b, c}, Edge{c, a}}) {
-      done.insert(side);
-      open.emplace_back(side.second, side.first);
-    }
-  }
-  return hull;
 }
 
 /// Numbers of the points that are vertices.
@@ -125,7 +57,7 @@ RC_GTEST_PROP(Wrap, UpwardsAndDownwardsTouchWhatASlowWrapTouches, ()) {
   const std::vector<Vector> points = rough_points(seed, *rc::gen::element(4, 30, 300), 20.0);
   const Wrap result =
       wrapped(cloud_of(points), down ? WrapDirection::downwards : WrapDirection::upwards, curvature);
-  const auto slow = slow_lower_hull(lifted(points, curvature, down ? -1 : 1));
+  const auto slow = corners_of(slow_lower_hull(lifted(points, curvature, down ? -1 : 1)));
   RC_ASSERT(vertices_of(result.mesh, points) == slow);
   RC_ASSERT(topology_of(result.mesh).is_disc());
 }
@@ -134,7 +66,7 @@ TEST(Wrap, TouchesWhatASlowWrapOf2000PointsTouches) {
   for (const double curvature : {0.02, 1.0}) {
     const std::vector<Vector> points = rough_points(11, 2000, 30.0);
     const Wrap result = wrapped(cloud_of(points), WrapDirection::upwards, curvature);
-    EXPECT_EQ(vertices_of(result.mesh, points), slow_lower_hull(lifted(points, curvature, 1)));
+    EXPECT_EQ(vertices_of(result.mesh, points), corners_of(slow_lower_hull(lifted(points, curvature, 1))));
   }
 }
 
@@ -162,19 +94,6 @@ RC_GTEST_PROP(Wrap, NoEndIsBelowAndTheMeshIsADiscEvenOnGrids, ()) {
     const Vector v = result.mesh.vertices[face[2]] - result.mesh.vertices[face[0]];
     RC_ASSERT(u.cross(v).z() > 0);
   }
-}
-
-/// Around the origin, dented.
-std::vector<Vector> star_points(std::uint64_t seed, std::size_t count) {
-  const RandomStream random(seed, "star");
-  std::vector<Vector> points;
-  for (std::uint64_t i = 0; points.size() < count; ++i) {
-    const Vector place = random_place(random, i, 1.0);
-    if (place.norm() < 0.1 || place.norm() > 1.0) continue;
-    const Vector n = place.normalized();
-    points.push_back(n * (3.0 + std::sin(5 * n.x()) * std::cos(4 * n.y()) + 0.2 * random.uniform(i, 5)));
-  }
-  return points;
 }
 
 RC_GTEST_PROP(Wrap, InwardsIsASphereAroundAllEndsWhoseConicsAreEmpty, ()) {
