@@ -57,14 +57,17 @@ void run(const Match& match, Session& session) {
   const std::string& input = match.text("CLOUD");
   const auto output = main_output(match, input, "_mesh", ".ply");
   const auto source = ray::open_ray_cloud(input);
+  const ray::WrapDirection direction = direction_of(match.text("DIRECTION"));
   const auto form = match.has("--full") ? ray::full_wrap : ray::wrap;
-  const ray::Wrap wrap = ray::tools::naming(input, [&] {
-    return form(session.context(), *source, direction_of(match.text("DIRECTION")), match.number("CURVATURE"));
-  });
+  const ray::Wrap wrap = ray::tools::naming(
+      input, [&] { return form(session.context(), *source, direction, match.number("CURVATURE")); });
   ray::write_mesh(output, wrap.mesh);
   ray::tools::note_dropped(session, wrap.stream.dropped);
+  const bool may_cut_off = !match.has("--full") && (direction == ray::WrapDirection::inwards ||
+                                                    direction == ray::WrapDirection::outwards);
   session.note(std::to_string(wrap.mesh.vertices.size()) + " of " + std::to_string(wrap.bounded) +
-               " ends are touched, " + std::to_string(wrap.mesh.faces.size()) + " triangles");
+               " ends are touched, " + (may_cut_off ? std::to_string(wrap.cut_off) + " cut off, " : "") +
+               std::to_string(wrap.mesh.faces.size()) + " triangles");
   session.summary({.rays_in = wrap.stream.rays_in, .files = {output}});
 }
 

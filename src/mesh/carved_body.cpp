@@ -18,14 +18,14 @@ constexpr std::size_t kChunk = 4096;      // points
 class Rounds {
  public:
   explicit Rounds(std::size_t points) : points_(points) {
-    while (points >> last_ > kFirstRound)
+    while (points >> (2 * last_) > kFirstRound)
       ++last_;
   }
   [[nodiscard]] int last() const { return last_; }
   [[nodiscard]] std::vector<Index> points_of(int round, const Tetrahedra& cells) const {
     std::vector<Index> found;
     for (Index p = 0; p < points_; ++p) {
-      const int late = std::countl_zero(random_.bits(p) | 1);  // half of the points come in the last round
+      const int late = std::countl_zero(random_.bits(p) | 1) / 2;  // a quarter comes before the last round
       if (std::max(0, last_ - late) == round && !cells.has(p)) found.push_back(p);
     }
     return found;

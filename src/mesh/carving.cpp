@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <queue>
-#include <tuple>
 
 namespace ray {
 namespace {
@@ -16,10 +15,15 @@ std::array<Index, 4> in_order(std::array<Index, 4> vertices) {
 
 struct Candidate {
   double squared_radius;
-  std::array<Index, 4> vertices;  ///< in order
   Index cell;
-  bool operator<(const Candidate& other) const {
-    return std::tie(squared_radius, vertices) < std::tie(other.squared_radius, other.vertices);
+};
+
+/// Of cells with the same radius the one with the largest vertices goes first.
+struct GoesLater {
+  const Tetrahedra& cells;
+  bool operator()(const Candidate& a, const Candidate& b) const {
+    if (a.squared_radius != b.squared_radius) return a.squared_radius < b.squared_radius;
+    return in_order(cells.cell(a.cell).vertices) < in_order(cells.cell(b.cell).vertices);
   }
 };
 
@@ -29,8 +33,16 @@ class Carver {
   [[nodiscard]] std::vector<std::uint8_t> run();
 
  private:
+  /// Places of a cell's neighbours that are outside, and of the others.
+  struct Sides {
+    std::array<std::size_t, 4> open{}, closed{};
+    std::size_t opens = 0;
+  };
+  [[nodiscard]] Sides sides_of(Index at) const;
   void join(Index at);
   void consider(Index at);
+  /// But for the sixth edge.
+  [[nodiscard]] bool may_join_nearly(Index at, const Sides& sides) const;
   [[nodiscard]] bool may_join(Index at) const;
   [[nodiscard]] bool is_outside(Index at) const { return outside_[at] != 0; }
 
@@ -38,14 +50,15 @@ class Carver {
   double least_squared_radius_;
   std::vector<std::uint8_t> outside_;
   std::vector<std::uint8_t> on_surface_;  ///< by vertex
-  std::priority_queue<Candidate> candidates_;
+  std::priority_queue<Candidate, std::vector<Candidate>, GoesLater> candidates_;
 };
 
 Carver::Carver(const Tetrahedra& cells, double least_squared_radius, const std::vector<Index>& outside)
     : cells_(cells),
       least_squared_radius_(least_squared_radius),
       outside_(cells.places(), 0),
-      on_surface_(cells.infinity() + std::size_t{1}, 0) {
+      on_surface_(cells.infinity() + std::size_t{1}, 0),
+      candidates_(GoesLater{cells}) {
   for (const Index at : outside) {
     outside_[at] = 1;
     for (const Index vertex : cells.cell(at).vertices)
@@ -66,39 +79,43 @@ std::vector<std::uint8_t> Carver::run() {
   return std::move(outside_);
 }
 
-bool Carver::may_join(Index at) const {
-  if (is_outside(at) || cells_.is_infinite(at)) return false;
-  const Tetrahedra::Cell& cell = cells_.cell(at);
-  std::array<std::size_t, 4> open{};
-  std::size_t count = 0;
+Carver::Sides Carver::sides_of(Index at) const {
+  Sides sides;
+  std::size_t closes = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    if (is_outside(cell.neighbours[i])) open[count++] = i;
-  if (count == 1) return on_surface_[cell.vertices[open[0]]] == 0;
-  return count == 2 &&
-         !cells_.any_around_edge(at, open[0], open[1], [&](Index other) { return is_outside(other); });
+    is_outside(cells_.cell(at).neighbours[i]) ? sides.open[sides.opens++] = i : sides.closed[closes++] = i;
+  return sides;
+}
+
+bool Carver::may_join_nearly(Index at, const Sides& sides) const {
+  if (is_outside(at) || cells_.is_infinite(at)) return false;
+  return sides.opens == 2 || (sides.opens == 1 && on_surface_[cells_.cell(at).vertices[sides.open[0]]] == 0);
+}
+
+bool Carver::may_join(Index at) const {
+  const Sides sides = sides_of(at);
+  if (!may_join_nearly(at, sides)) return false;
+  return sides.opens == 1 || !cells_.any_around_edge(at, sides.open[0], sides.open[1],
+                                                     [&](Index other) { return is_outside(other); });
 }
 
 void Carver::consider(Index at) {
-  if (!may_join(at)) return;
+  if (!may_join_nearly(at, sides_of(at))) return;
   const double squared_radius = squared_radius_of(cells_, at);
-  if (squared_radius >= least_squared_radius_)
-    candidates_.push({squared_radius, in_order(cells_.cell(at).vertices), at});
+  if (squared_radius >= least_squared_radius_) candidates_.push({squared_radius, at});
 }
 
 void Carver::join(Index at) {
-  outside_[at] = 1;
+  const Sides sides = sides_of(at);
   const Tetrahedra::Cell& cell = cells_.cell(at);
-  std::array<std::size_t, 4> open{}, closed{};
-  std::size_t opens = 0, closes = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    on_surface_[cell.vertices[i]] = 1;
-    is_outside(cell.neighbours[i]) ? open[opens++] = i : closed[closes++] = i;
-  }
-  for (std::size_t i = 0; i < closes; ++i)
-    consider(cell.neighbours[closed[i]]);
+  outside_[at] = 1;
+  for (const Index vertex : cell.vertices)
+    on_surface_[vertex] = 1;
+  for (std::size_t i = 0; i < 4 - sides.opens; ++i)
+    consider(cell.neighbours[sides.closed[i]]);
   // The edge of the two faces is not on the surface any more, so it keeps no cell from joining.
-  if (opens == 2) {
-    cells_.any_around_edge(at, closed[0], closed[1], [&](Index other) {
+  if (sides.opens == 2) {
+    cells_.any_around_edge(at, sides.closed[0], sides.closed[1], [&](Index other) {
       consider(other);
       return false;
     });

@@ -9,6 +9,7 @@
 #include <raycloud/mesh/mesh_distance.h>
 #include <raycloud/mesh/mesh_height.h>
 #include <raycloud/mesh/topology.h>
+#include <raycloud/mesh/weld.h>
 #include <raycloud/mesh/wrap.h>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,7 @@ RC_GTEST_PROP(Wrap, UpwardsAndDownwardsTouchWhatASlowWrapTouches, ()) {
   const auto slow = corners_of(slow_lower_hull(lifted(points, curvature, down ? -1 : 1)));
   RC_ASSERT(vertices_of(result.mesh, points) == slow);
   RC_ASSERT(topology_of(result.mesh).is_disc());
+  RC_ASSERT(self_intersections(result.mesh).empty());
 }
 
 TEST(Wrap, TouchesWhatASlowWrapOf2000PointsTouches) {
@@ -84,6 +86,7 @@ RC_GTEST_PROP(Wrap, NoEndIsBelowAndTheMeshIsADiscEvenOnGrids, ()) {
   const double curvature = *rc::gen::element(0.0, 0.5, 1000.0);
   const Wrap result = wrapped(cloud_of(points), WrapDirection::upwards, curvature / step);
   RC_ASSERT(topology_of(result.mesh).is_disc());
+  RC_ASSERT(self_intersections(result.mesh).empty());
   const MeshHeight height(result.mesh);
   for (const Vector& point : points) {
     const HeightAt at = height.at(point.x(), point.y());
@@ -97,37 +100,74 @@ RC_GTEST_PROP(Wrap, NoEndIsBelowAndTheMeshIsADiscEvenOnGrids, ()) {
 }
 
 RC_GTEST_PROP(Wrap, InwardsIsASphereAroundAllEndsWhoseConicsAreEmpty, ()) {
-  const std::vector<Vector> points = star_points(*rc::gen::arbitrary<std::uint64_t>(), 500);
+  const std::vector<Vector> points = star_points(*rc::gen::arbitrary<std::uint64_t>(), 150);
   const double curvature = *rc::gen::element(0.0, 0.1, 2.0);
   const Wrap result = wrapped(cloud_of(points), WrapDirection::inwards, curvature);
   RC_ASSERT(topology_of(result.mesh).is_sphere());
+  RC_ASSERT(self_intersections(result.mesh).empty());
   const MeshDistance distance(result.mesh);
   Vector middle = Vector::Zero();
   for (const Vector& point : points) {
     RC_ASSERT(distance.at(point) < 1e-9);
-    middle += point / 500.0;
+    middle += point / static_cast<double>(points.size());
   }
   const auto mapped = [&](const Vector& point) {
     return Vector((point - middle) / (1 + curvature * (point - middle).norm()));
   };
+  std::vector<Vector> all;
+  for (const Vector& point : points)
+    all.push_back(mapped(point));
   for (const auto& [a, b, c] : result.mesh.faces) {
     const Vector at = mapped(result.mesh.vertices[a]);
     const Vector normal =
         (mapped(result.mesh.vertices[b]) - at).cross(mapped(result.mesh.vertices[c]) - at).normalized();
-    for (const Vector& point : points)
-      RC_ASSERT(normal.dot(mapped(point) - at) < 1e-8);
+    RC_ASSERT(std::all_of(all.begin(), all.end(),
+                          [&](const Vector& point) { return normal.dot(point - at) < 1e-8; }));
   }
 }
 
+RC_GTEST_PROP(Wrap, InwardsIsWholeEvenOnGrids, ()) {
+  const RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), "grid");
+  const Vector away = *rc::gen::element(Vector(0, 0, 0), Vector(5e5, 5e6, 300));
+  std::vector<Vector> points;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    points.push_back(away + Vector(double(random.below(5, i, 0)), double(random.below(5, i, 1)),
+                                   double(random.below(3, i, 2))));
+  }
+  for (const Vector& corner : {Vector(0, 0, 0), Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)})
+    points.push_back(away + corner);
+  const Mesh mesh =
+      wrapped(cloud_of(points), WrapDirection::inwards, *rc::gen::element(0.0, 0.5, 1000.0)).mesh;
+  RC_ASSERT(topology_of(weld(mesh).mesh).is_sphere());
+  RC_ASSERT(self_intersections(mesh).empty());
+  const MeshDistance distance(mesh);
+  for (const Vector& point : points)
+    RC_ASSERT(distance.at(point) < 1e-6);
+}
+
 RC_GTEST_PROP(Wrap, OutwardsIsASphereWithNoEndInside, ()) {
-  const std::vector<Vector> points = star_points(*rc::gen::arbitrary<std::uint64_t>(), 500);
+  const std::vector<Vector> points = star_points(*rc::gen::arbitrary<std::uint64_t>(), 150);
   const double curvature = *rc::gen::element(0.8, 2.0, 20.0);
   const Wrap result = wrapped(cloud_of(points), WrapDirection::outwards, curvature);
   RC_ASSERT(topology_of(result.mesh).is_sphere());
+  RC_ASSERT(self_intersections(result.mesh).empty());
+  RC_ASSERT(result.cut_off == 0u);
   const MeshDistance distance(result.mesh);
   for (const Vector& point : points)
     RC_ASSERT(distance.at(point) > -1e-9);
   RC_ASSERT(distance.at(Vector::Zero()) < -1.0);
+}
+
+TEST(Wrap, OutwardsCountsEndsThatItCutsOff) {
+  // A floor without walls or ceiling: from its middle nothing closes above.
+  const std::vector<Vector> points = rough_points(4, 500, 20.0);
+  const Wrap result = wrapped(cloud_of(points, {0, 0, 12}), WrapDirection::outwards, 1.0);
+  const MeshDistance distance(result.mesh);
+  std::uint64_t inside = 0;
+  for (const Vector& point : points)
+    inside += distance.at(point) <= -4e-5 ? 1 : 0;
+  EXPECT_EQ(result.cut_off, inside);
+  EXPECT_GT(result.cut_off, 0u);
 }
 
 TEST(Wrap, MoreCurvatureTouchesMoreOfARoom) {
