@@ -2,9 +2,20 @@
 
 #include <raycloud/core/error.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ray {
+namespace {
+
+/// What wraps as the curvature would, with room for its products: the probe's sag across the cloud is then so
+/// many times the cloud's size that no more makes a difference.
+double sensible(double curvature, const Bounds& bounds) {
+  constexpr double kMostSag = 1e30;
+  return std::min(curvature, kMostSag / bounds.extent().norm());
+}
+
+}  // namespace
 
 Wrap wrap(const Context& context, RaySource& source, WrapDirection direction, double curvature) {
   if (!std::isfinite(curvature) || curvature < 0.0)
@@ -13,6 +24,7 @@ Wrap wrap(const Context& context, RaySource& source, WrapDirection direction, do
   if (survey.bounded == 0)
     throw Error(ErrorCode::no_data, "has no bounded rays, so there is nothing to wrap");
   source.rewind();
+  curvature = sensible(curvature, survey.bounds);
   switch (direction) {
     case WrapDirection::upwards:
       return wrap_from_below(context, source, survey, curvature, 1.0);

@@ -1,12 +1,17 @@
 #pragma once
-/// Points to wrap.
+/// Points to wrap, and their wraps.
 
 #include "shapes.h"
 
+#include <raycloud/core/memory_stream.h>
 #include <raycloud/core/ray_cloud.h>
+#include <raycloud/mesh/wrap.h>
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,6 +28,26 @@ inline RayCloud cloud_of(const std::vector<Eigen::Vector3d>& ends,
     cloud.bounded[i] = 1;
   }
   return cloud;
+}
+
+inline Wrap wrapped(const RayCloud& cloud, WrapDirection direction, double curvature,
+                    std::size_t chunk = 1000, const Context& context = {.threads = 1}) {
+  MemorySource source(cloud, chunk);
+  return wrap(context, source, direction, curvature);
+}
+
+/// Numbers of the points that are vertices.
+inline std::set<std::size_t> vertices_of(const Mesh& mesh, const std::vector<Eigen::Vector3d>& points) {
+  std::set<std::size_t> found;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      if ((points[i] - vertex).squaredNorm() < (points[best] - vertex).squaredNorm()) best = i;
+    EXPECT_LT((points[best] - vertex).norm(), 1e-6);
+    found.insert(best);
+  }
+  EXPECT_EQ(found.size(), mesh.vertices.size());
+  return found;
 }
 
 /// Hills, with things on them.
