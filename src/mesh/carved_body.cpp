@@ -1,6 +1,8 @@
 #include "carved_body.h"
 
-#include <raycloud/exec/parallel.h>
+#include "points_in_spheres.h"
+#include "reach.h"
+
 #include <raycloud/exec/random.h>
 
 #include <algorithm>
@@ -10,9 +12,9 @@ namespace ray {
 namespace {
 
 using Index = Tetrahedra::Index;
+using Cells = std::vector<Index>;
 
 constexpr std::size_t kFirstRound = 500;  // points, about
-constexpr std::size_t kChunk = 4096;      // points
 
 /// Numbers of the points that are not there yet, by round.
 class Rounds {
@@ -43,57 +45,34 @@ class Rounds {
   RandomStream random_{1, "rounds of points in space"};
 };
 
-/// The last point before p that is there, or any.
-Index near_point(const Tetrahedra& cells, Index p) {
-  for (Index q = p; q > 0; --q)
-    if (cells.has(q - 1)) return q - 1;
-  while (!cells.has(p))
-    ++p;
-  return p;
-}
-
-std::vector<std::uint8_t> cells_with_a_say(const Tetrahedra& cells, const std::vector<std::uint8_t>& outside,
-                                           const std::vector<Index>& witnesses) {
-  std::vector<std::uint8_t> say(cells.places(), 0);
-  for (Index at = 0; at < say.size(); ++at) {
-    if (outside[at] == 0) continue;
-    say[at] = 1;
-    for (const Index other : cells.cell(at).neighbours)
-      say[other] = 1;
-  }
-  for (const Index at : witnesses)
-    say[at] = 1;
-  return say;
-}
-
-/// Of the points, in order, those that lie in the sphere of a marked cell.
-std::vector<Index> in_spheres(const Context& context, const Tetrahedra& cells,
-                              const std::vector<std::uint8_t>& marked, const std::vector<Index>& points) {
-  using Found = std::vector<Index>;
-  return parallel_reduce(
-      context, points.size(), kChunk, Found{},
-      [&](std::size_t begin, std::size_t end) {
-        Found found;
-        std::vector<Index> region;
-        Index from = cells.cell_of(near_point(cells, points[begin]));
-        for (std::size_t i = begin; i < end; ++i) {
-          if (cells.any_in_conflict(points[i], from, region, [&](Index at) { return marked[at] != 0; }))
-            found.push_back(points[i]);
-          from = region.front();
-        }
-        return found;
-      },
-      [](Found all, const Found& more) {
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
-      });
-}
-
-void insert(const Context& context, Tetrahedra& cells, const std::vector<Index>& points) {
+void insert(const Context& context, Tetrahedra& cells, const Cells& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i % kChunk == 0) check_cancelled(context);
-    cells.insert(points[i], i > 0 ? points[i - 1] : near_point(cells, points[i]));
+    if (i % 4096 == 0) check_cancelled(context);
+    cells.insert(points[i], i > 0 ? points[i - 1] : cells.near_point(points[i]));
   }
+}
+
+/// The same, and all places whose cells change, some several times.
+Cells places_changed_by(const Cells& points, Tetrahedra& cells) {
+  Cells changed;
+  for (const Index p : points) {
+    cells.insert(p, cells.near_point(p));
+    changed.insert(changed.end(), cells.removed().begin(), cells.removed().end());
+    changed.insert(changed.end(), cells.created().begin(), cells.created().end());
+  }
+  return changed;
+}
+
+void mark(std::vector<std::uint8_t>& marks, const Cells& cells) {
+  for (const Index at : cells)
+    marks[at] = 1;
+}
+
+Cells marked(const std::vector<std::uint8_t>& marks) {
+  Cells cells;
+  for (Index at = 0; at < marks.size(); ++at)
+    if (marks[at] != 0) cells.push_back(at);
+  return cells;
 }
 
 }  // namespace
@@ -103,17 +82,39 @@ CarvedBody carve_body(const Context& context, std::span<const LatticePoint> poin
                       const FirstOutside& witnesses) {
   CarvedBody body{Tetrahedra(points), {}};
   Tetrahedra& cells = body.cells;
+  const auto with_a_say = [&](Reach& reach) {
+    reach.extend(first_outside(cells));
+    std::vector<std::uint8_t> say = reach.with_neighbours();
+    mark(say, witnesses(cells));
+    return say;
+  };
   const Rounds rounds(points.size());
   insert(context, cells, rounds.points_of(0, cells));
-  for (int round = 1;; ++round) {
-    body.outside = carve(cells, least_squared_radius, first_outside(cells));
-    const bool in_rounds = round <= rounds.last();
-    const std::vector<Index> next =
-        in_spheres(context, cells, cells_with_a_say(cells, body.outside, witnesses(cells)),
-                   in_rounds ? rounds.points_of(round, cells) : Rounds::all_that_remain(cells));
-    if (!in_rounds && next.empty()) return body;
-    insert(context, cells, next);
+  for (int round = 1; round <= rounds.last(); ++round) {
+    Reach reach(context, cells, least_squared_radius);
+    insert(context, cells,
+           points_in_spheres(context, cells, marked(with_a_say(reach)), rounds.points_of(round, cells)));
   }
+  // Those of the rounds before that have a say only now, until no point lies in a sphere.
+  Reach reach(context, cells, least_squared_radius);
+  std::vector<std::uint8_t> asked;
+  while (true) {
+    std::vector<std::uint8_t> say = with_a_say(reach);
+    asked.resize(say.size(), 0);
+    for (std::size_t at = 0; at < say.size(); ++at) {
+      if (asked[at] != 0) say[at] = 0;
+      asked[at] |= say[at];
+    }
+    const Cells next = points_in_spheres(context, cells, marked(say), Rounds::all_that_remain(cells));
+    if (next.empty()) break;
+    const Cells changed = places_changed_by(next, cells);
+    asked.resize(cells.places(), 0);
+    for (const Index at : changed)
+      asked[at] = 0;
+    reach.renew(changed);
+  }
+  body.outside = carve(cells, least_squared_radius, first_outside(cells));
+  return body;
 }
 
 }  // namespace ray

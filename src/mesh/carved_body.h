@@ -19,9 +19,9 @@ struct CarvedBody {
 using FirstOutside = std::function<std::vector<Tetrahedra::Index>(const Tetrahedra& cells)>;
 
 /// Carves as if all points were triangulated. Points are added in rounds, each four times the one before, and
-/// only those that lie in the sphere of a cell that had a say in the carving of the points before. When no
-/// point lies in any such sphere, all these cells are cells of all points, and as it looks at no others, the
-/// carving is theirs.
+/// only those that lie in the sphere of a cell that may have a say in the carving: one that the ball comes
+/// to, or a neighbour of one. When no point lies in any such sphere, all these cells are cells of all points,
+/// and as carving looks at no others, it is theirs.
 ///
 /// `first_outside` must return the same set for two triangulations that agree on that set, on the neighbours
 /// of its cells and on the cells of `witnesses`. Precondition: points near each other follow each other, no

@@ -131,7 +131,7 @@ std::vector<std::uint8_t> carve(const Tetrahedra& cells, double least_squared_ra
 
 double squared_radius_of(const Tetrahedra& cells, Index at) {
   const auto [a, b, c, d] = in_order(cells.cell(at).vertices);
-  return squared_radius({cells.point(a), cells.point(b), cells.point(c), cells.point(d)});
+  return sphere_of({cells.point(a), cells.point(b), cells.point(c), cells.point(d)}).squared_radius;
 }
 
 }  // namespace ray

@@ -112,11 +112,11 @@ int side_of_sphere(const std::array<LatticePoint, 4>& corners, const std::array<
   return exact_side_of_sphere(corners, ranks, p, rank);
 }
 
-double squared_radius(const std::array<LatticePoint, 4>& corners) {
+Sphere sphere_of(const std::array<LatticePoint, 4>& corners) {
   const std::array<Offset, 3> away{between(corners[0], corners[1]), between(corners[0], corners[2]),
                                    between(corners[0], corners[3])};
   const auto volume = static_cast<double>(determinant_of(away[0], away[1], away[2]));
-  double sum = 0.0;
+  Sphere sphere{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t y = (axis + 1) % 3, z = (axis + 2) % 3;
     Wide offset = 0;  // of the centre, times twice the volume; 3 * 2^60 * 2^61 * 3 has 125 bits
@@ -125,10 +125,16 @@ double squared_radius(const std::array<LatticePoint, 4>& corners) {
       const Offset& c = away[(i + 2) % 3];
       offset += Wide{squared_length(away[i])} * (b[y] * c[z] - b[z] * c[y]);
     }
-    const double coordinate = static_cast<double>(offset) / volume;
-    sum += coordinate * coordinate;
+    sphere.centre[axis] = 0.5 * (static_cast<double>(offset) / volume);
+    sphere.squared_radius += sphere.centre[axis] * sphere.centre[axis];
   }
-  return 0.25 * sum;
+  return sphere;
+}
+
+std::array<double, 3> normal_of(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
+  const Offset u = between(a, b), v = between(a, c);
+  return {static_cast<double>(u[1] * v[2] - u[2] * v[1]), static_cast<double>(u[2] * v[0] - u[0] * v[2]),
+          static_cast<double>(u[0] * v[1] - u[1] * v[0])};
 }
 
 }  // namespace ray

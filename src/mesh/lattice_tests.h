@@ -25,8 +25,17 @@ inline constexpr std::int32_t kLatticeSteps = std::int32_t{1} << 30;
                                  const std::array<std::uint32_t, 4>& ranks, const LatticePoint& p,
                                  std::uint32_t rank);
 
-/// The square of the radius of the sphere through the four, in steps, correct to some 1e-15. Precondition:
-/// they are not in a plane.
-[[nodiscard]] double squared_radius(const std::array<LatticePoint, 4>& corners);
+struct Sphere {
+  std::array<double, 3> centre;  ///< from the first of its corners
+  double squared_radius;
+};
+
+/// The sphere through the four, in steps, correct to some 1e-15 of the radius. Precondition: they are not in
+/// a plane.
+[[nodiscard]] Sphere sphere_of(const std::array<LatticePoint, 4>& corners);
+
+/// Across the plane of a, b and c, towards where they run anticlockwise as seen from.
+[[nodiscard]] std::array<double, 3> normal_of(const LatticePoint& a, const LatticePoint& b,
+                                              const LatticePoint& c);
 
 }  // namespace ray

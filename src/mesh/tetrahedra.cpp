@@ -85,7 +85,15 @@ bool Tetrahedra::conflicts(Index at, Index p) const {
   return side != 0 ? side > 0 : in_sphere(cells_[at].neighbours[3], p);
 }
 
+Tetrahedra::Index Tetrahedra::near_point(Index p) const {
+  for (Index q = p; q > 0; --q)
+    if (has(q - 1)) return q - 1;
+  return first_;
+}
+
 void Tetrahedra::insert(Index p, Index near) {
+  removed_.clear();
+  created_.clear();
   if (has(p)) return;
   remove_in_conflict(locate(points_[p], cell_of_[near]), p);
   fill(p);
@@ -142,6 +150,7 @@ void Tetrahedra::fill(Index p) {
   }
   for (const OpenFace& open : open_faces_) {
     const Index place = place_for_cell();
+    created_.push_back(place);
     Cell& cell = cells_[place];
     cell.vertices = {open.corners[0], open.corners[1], open.corners[2], p};
     std::size_t own = 3;

@@ -53,7 +53,10 @@ class Tetrahedra {
   /// near. Thread-safe.
   [[nodiscard]] Index locate(const LatticePoint& place, Index from) const;
 
-  /// For cells that would go if p were added: `visit(cell)` until one says true, and whether one did.
+  /// Whether the cell would go if p were added. Thread-safe.
+  [[nodiscard]] bool conflicts(Index at, Index p) const;
+
+  /// For the cells that would go if p were added: `visit(cell)` until one says true, and whether one did.
   /// `region` holds them afterwards, first the one that p is in. `from` as above. Thread-safe.
   template <class Visit>
   bool any_in_conflict(Index p, Index from, std::vector<Index>& region, const Visit& visit) const {
@@ -67,6 +70,13 @@ class Tetrahedra {
     }
     return false;
   }
+
+  /// Places of the cells that the last insertion took and made; some may be the same.
+  [[nodiscard]] std::span<const Index> removed() const { return removed_; }
+  [[nodiscard]] std::span<const Index> created() const { return created_; }
+
+  /// The last point before p that is there, or any.
+  [[nodiscard]] Index near_point(Index p) const;
 
   /// `visit(cell)` for all cells around an edge of `at`, that of its vertices at places i and j; ends early
   /// with the first that says true, and says whether one did.
@@ -102,7 +112,6 @@ class Tetrahedra {
     std::size_t place = 0;
   };
 
-  [[nodiscard]] bool conflicts(Index at, Index p) const;
   [[nodiscard]] bool in_sphere(Index at, Index p) const {
     return side_of_sphere(corners(at), cells_[at].vertices, points_[p], p) > 0;
   }
@@ -119,7 +128,7 @@ class Tetrahedra {
   std::vector<Index> free_;
   std::vector<std::uint32_t> seen_;  ///< 2 stamp + 1: in conflict with the point of that stamp
   std::uint32_t stamp_ = 0;
-  std::vector<Index> removed_;
+  std::vector<Index> removed_, created_;
   std::vector<OpenFace> open_faces_;
   std::vector<OpenEdge> open_edges_;  ///< a hash table
 };
