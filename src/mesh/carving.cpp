@@ -50,6 +50,7 @@ class Carver {
   double least_squared_radius_;
   std::vector<std::uint8_t> outside_;
   std::vector<std::uint8_t> on_surface_;  ///< by vertex
+  std::vector<std::uint8_t> is_waiting_;  ///< among the candidates, or too small for ever
   std::priority_queue<Candidate, std::vector<Candidate>, GoesLater> candidates_;
 };
 
@@ -58,6 +59,7 @@ Carver::Carver(const Tetrahedra& cells, double least_squared_radius, const std::
       least_squared_radius_(least_squared_radius),
       outside_(cells.places(), 0),
       on_surface_(cells.infinity() + std::size_t{1}, 0),
+      is_waiting_(cells.places(), 0),
       candidates_(GoesLater{cells}) {
   for (const Index at : outside) {
     outside_[at] = 1;
@@ -74,6 +76,7 @@ std::vector<std::uint8_t> Carver::run() {
   while (!candidates_.empty()) {
     const Index at = candidates_.top().cell;
     candidates_.pop();
+    is_waiting_[at] = 0;
     if (may_join(at)) join(at);
   }
   return std::move(outside_);
@@ -100,7 +103,8 @@ bool Carver::may_join(Index at) const {
 }
 
 void Carver::consider(Index at) {
-  if (!may_join_nearly(at, sides_of(at))) return;
+  if (is_waiting_[at] != 0 || !may_join_nearly(at, sides_of(at))) return;
+  is_waiting_[at] = 1;
   const double squared_radius = squared_radius_of(cells_, at);
   if (squared_radius >= least_squared_radius_) candidates_.push({squared_radius, at});
 }
