@@ -30,7 +30,9 @@ holes, and no edge is split. Unbounded rays end at nothing and are left out.
 
 With --full a ball rolls over the ends in place of the quicker probe, which only comes straight from below or
 above, or from the middle: it goes under overhangs and into hollows that are wider than it. Where two sides of
-it would meet, around a pillar or behind a door, it stops, as the mesh stays a disc or a sphere.)",
+it would meet, around a pillar or behind a door, it stops, as the mesh stays a disc or a sphere.
+
+`rayextract terrain` writes to the same name: give one of them another by --output to keep both.)",
     .usages = {{.words = {cloud(), choice("DIRECTION", {"upwards", "downwards", "inwards", "outwards"}),
                           number("CURVATURE", kNonNegative)},
                 .help = "a mesh around the cloud from this side",
