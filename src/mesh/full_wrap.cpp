@@ -1,7 +1,7 @@
 #include "carved_body.h"
-#include "ends_survey.h"
 #include "insertion_order.h"
 #include "lattice.h"
+#include "wrap_forms.h"
 
 #include <raycloud/core/error.h>
 #include <raycloud/mesh/full_wrap.h>
@@ -190,12 +190,7 @@ Mesh mesh_of(std::vector<Mesh::Face> faces, const std::vector<LatticePoint>& poi
 }  // namespace
 
 Wrap full_wrap(const Context& context, RaySource& source, WrapDirection direction, double curvature) {
-  if (!std::isfinite(curvature) || curvature < 0.0)
-    throw Error(ErrorCode::usage, "the curvature must be 0 or more");
-  const EndsSurvey survey = survey_ends(context, source);
-  if (survey.bounded == 0)
-    throw Error(ErrorCode::no_data, "has no bounded rays, so there is nothing to wrap");
-  source.rewind();
+  const EndsSurvey survey = survey_for_wrap(context, source, curvature);
   const Lattice lattice(survey.bounds);
   const bool downwards = direction == WrapDirection::downwards;
   const bool is_sheet = downwards || direction == WrapDirection::upwards;

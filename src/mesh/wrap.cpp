@@ -17,13 +17,18 @@ double sensible(double curvature, const Bounds& bounds) {
 
 }  // namespace
 
-Wrap wrap(const Context& context, RaySource& source, WrapDirection direction, double curvature) {
+EndsSurvey survey_for_wrap(const Context& context, RaySource& source, double curvature) {
   if (!std::isfinite(curvature) || curvature < 0.0)
     throw Error(ErrorCode::usage, "the curvature must be 0 or more");
   const EndsSurvey survey = survey_ends(context, source);
   if (survey.bounded == 0)
     throw Error(ErrorCode::no_data, "has no bounded rays, so there is nothing to wrap");
   source.rewind();
+  return survey;
+}
+
+Wrap wrap(const Context& context, RaySource& source, WrapDirection direction, double curvature) {
+  const EndsSurvey survey = survey_for_wrap(context, source, curvature);
   curvature = sensible(curvature, survey.bounds);
   switch (direction) {
     case WrapDirection::upwards:
