@@ -13,7 +13,7 @@ constexpr int kCurveBits = 20;  // of each coordinate; what is nearer may come i
 
 /// Place along the curve of Hilbert (Skilling, "Programming the Hilbert curve", 2004).
 template <std::size_t N>
-std::uint64_t place_on_curve(std::array<std::uint32_t, N> x) {
+std::uint64_t curve_place(std::array<std::uint32_t, N> x) {
   for (std::uint32_t& coordinate : x)
     coordinate >>= 31 - kCurveBits;
   for (std::uint32_t q = 1u << (kCurveBits - 1); q > 1; q >>= 1) {
@@ -41,20 +41,31 @@ std::uint64_t place_on_curve(std::array<std::uint32_t, N> x) {
   return place;
 }
 
+/// Half of the points come in the last round.
+class InsertionRounds {
+ public:
+  explicit InsertionRounds(std::size_t points) : last_(std::bit_width(points)) {}
+  [[nodiscard]] std::uint32_t operator()(std::uint32_t point) const {
+    return static_cast<std::uint32_t>(std::max(0, last_ - std::countl_zero(random_.bits(point) | 1)));
+  }
+  [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(last_) + 1; }
+
+ private:
+  RandomStream random_{1, "insertion rounds"};
+  int last_;
+};
+
 template <std::size_t N>
 std::vector<std::uint32_t> order_of(const std::vector<std::array<std::uint32_t, N>>& points) {
-  const RandomStream random(1, "insertion rounds");
-  const int rounds = std::bit_width(points.size());
+  const InsertionRounds round_of(points.size());
   struct Key {
     std::uint64_t place;
     std::uint32_t round;
     std::uint32_t index;
   };
   std::vector<Key> keys(points.size());
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const int late = std::countl_zero(random.bits(i) | 1);  // half of the points come in the last round
-    keys[i] = {place_on_curve<N>(points[i]), static_cast<std::uint32_t>(std::max(0, rounds - late)), i};
-  }
+  for (std::uint32_t i = 0; i < keys.size(); ++i)
+    keys[i] = {curve_place<N>(points[i]), round_of(i), i};
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.round, a.place, a.index) < std::tie(b.round, b.place, b.index);
   });
@@ -65,6 +76,30 @@ std::vector<std::uint32_t> order_of(const std::vector<std::array<std::uint32_t, 
 }
 
 }  // namespace
+
+std::uint64_t place_on_curve(const std::array<std::uint32_t, 2>& point) {
+  return curve_place<2>(point);
+}
+
+std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& point) {
+  return curve_place<3>(point);
+}
+
+std::vector<std::uint32_t> insertion_order_along_curve(std::size_t points) {
+  const InsertionRounds round_of(points);
+  std::vector<std::size_t> next(round_of.count() + 1, 0);
+  std::vector<std::uint8_t> rounds(points);
+  for (std::uint32_t i = 0; i < points; ++i) {
+    rounds[i] = static_cast<std::uint8_t>(round_of(i));
+    ++next[rounds[i] + std::size_t{1}];
+  }
+  for (std::size_t round = 1; round < next.size(); ++round)
+    next[round] += next[round - 1];
+  std::vector<std::uint32_t> order(points);
+  for (std::uint32_t i = 0; i < points; ++i)
+    order[next[rounds[i]]++] = i;
+  return order;
+}
 
 std::vector<std::uint32_t> insertion_order(const std::vector<std::array<std::uint32_t, 2>>& points) {
   return order_of(points);

@@ -15,4 +15,11 @@ namespace ray {
 [[nodiscard]] std::vector<std::uint32_t> insertion_order(
     const std::vector<std::array<std::uint32_t, 3>>& points);
 
+/// How far along the curve a point of such coordinates lies, which is told in steps of 2^11 along each axis.
+[[nodiscard]] std::uint64_t place_on_curve(const std::array<std::uint32_t, 2>& point);
+[[nodiscard]] std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& point);
+
+/// Of points that follow the curve already: by round only.
+[[nodiscard]] std::vector<std::uint32_t> insertion_order_along_curve(std::size_t points);
+
 }  // namespace ray

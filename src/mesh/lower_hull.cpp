@@ -15,8 +15,16 @@ std::vector<std::uint32_t> order_of_plan(const std::vector<PlanPoint>& points) {
 }  // namespace
 
 std::unique_ptr<LowerHull> LowerHull::make(std::vector<PlanPoint> points) {
-  std::unique_ptr<LowerHull> hull(new LowerHull(std::move(points)));
-  hull->order_ = order_of_plan(hull->points_);
+  std::vector<std::uint32_t> order = order_of_plan(points);
+  return begin(std::unique_ptr<LowerHull>(new LowerHull(std::move(points), std::move(order))));
+}
+
+std::unique_ptr<LowerHull> LowerHull::make_along_curve(std::vector<PlanPoint> points) {
+  std::vector<std::uint32_t> order = insertion_order_along_curve(points.size());
+  return begin(std::unique_ptr<LowerHull>(new LowerHull(std::move(points), std::move(order))));
+}
+
+std::unique_ptr<LowerHull> LowerHull::begin(std::unique_ptr<LowerHull> hull) {
   if (!hull->find_first()) return nullptr;
   hull->points_.emplace_back();
   const auto infinity = static_cast<Index>(hull->points_.size());

@@ -61,6 +61,9 @@ class LowerHull {
   /// Only three of the points are in it yet, until `insert_all` or the caller adds the others. Nothing if all
   /// lie on one line of the plan.
   [[nodiscard]] static std::unique_ptr<LowerHull> make(std::vector<PlanPoint> points);
+  /// The same, of points each of which is near the one before (`insertion_order.h`): quicker, if they are
+  /// many.
+  [[nodiscard]] static std::unique_ptr<LowerHull> make_along_curve(std::vector<PlanPoint> points);
   LowerHull(const LowerHull&) = delete;
   LowerHull& operator=(const LowerHull&) = delete;
 
@@ -78,7 +81,9 @@ class LowerHull {
   [[nodiscard]] std::optional<double> height_at(std::int64_t x, std::int64_t y);
 
  private:
-  explicit LowerHull(std::vector<PlanPoint> points) : points_(std::move(points)) {}
+  LowerHull(std::vector<PlanPoint> points, std::vector<std::uint32_t> order)
+      : points_(std::move(points)), order_(std::move(order)) {}
+  [[nodiscard]] static std::unique_ptr<LowerHull> begin(std::unique_ptr<LowerHull> hull);
   [[nodiscard]] bool find_first();
 
   std::vector<PlanPoint> points_;  ///< one more than were given, for the place asked for

@@ -73,6 +73,15 @@ std::optional<std::array<SpaceHull::Index, 4>> SpaceHull::find_first(
   return std::nullopt;
 }
 
+bool SpaceHull::holds(const SpacePoint& place) {
+  const auto query = static_cast<Index>(points_.size() - 1);
+  points_[query] = place;
+  const std::vector<Mesh::Face> faces = complex_->finite_faces();
+  return std::all_of(faces.begin(), faces.end(), [&](const Mesh::Face& face) {
+    return geometry_.volume(face[0], face[1], face[2], query) < 0;
+  });
+}
+
 double SpaceHull::gauge(const Eigen::Vector3d& direction) {
   const auto query = static_cast<Index>(points_.size() - 1);
   const Eigen::Vector3d place = inside() + direction;

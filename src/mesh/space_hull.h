@@ -72,6 +72,8 @@ class SpaceHull {
   SpaceHull& operator=(const SpaceHull&) = delete;
 
   [[nodiscard]] const HullComplex<SpaceGeometry>& complex() const { return *complex_; }
+  /// Strictly inside.
+  [[nodiscard]] bool holds(const SpacePoint& place);
   /// A place well inside, in steps.
   [[nodiscard]] Eigen::Vector3d inside() const { return geometry_.inside(); }
   /// By how much `direction`, of about 2^34 steps, from the place inside must be divided to end on the hull:

@@ -4,6 +4,7 @@
 #include "wrap_forms.h"
 
 #include <raycloud/core/error.h>
+#include <raycloud/mesh/mesh_distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,11 +156,57 @@ std::vector<MappedEnd> outside_of(const Context& context, RaySource& source, con
   return all;
 }
 
+/// Of a power of two in length; the least that is not below.
+double step_not_below(double length) {
+  return std::exp2(std::ceil(std::log2(length)));
+}
+
+/// To steps that those of the ends will be no coarser than: ends in a plane of round coordinates stay in one.
+Eigen::Vector3d snapped(const Eigen::Vector3d& middle, const Bounds& bounds) {
+  const double size = std::max(bounds.extent().norm(), 1e-300);
+  const double furthest = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).maxCoeff();
+  const double step = step_not_below(std::max(size / static_cast<double>(kSpaceSteps), 4e-16 * furthest));
+  return (middle / step).array().round() * step + 0.0;  // no -0
+}
+
+std::uint64_t count_cut_off(const Context& context, RaySource& source, const Mesh& mesh, double little) {
+  const MeshDistance distance(mesh);
+  std::uint64_t count = 0;
+  stream(
+      context, source, nullptr,
+      [&](RayCloud& rays) {
+        std::vector<Eigen::Vector3d> ends;
+        for (std::size_t i = 0; i < rays.size(); ++i)
+          if (rays.bounded[i] != 0) ends.push_back(rays.ends[i]);
+        std::vector<std::uint8_t> are_outside(ends.size());
+        distance.are_beyond(ends, -little, are_outside);
+        return static_cast<std::uint64_t>(std::count(are_outside.begin(), are_outside.end(), 0));
+      },
+      [&](RayCloud&, std::uint64_t part) { count += part; });
+  return count;
+}
+
+Mesh mesh_of(const SpaceHull& hull, const std::vector<MappedEnd>& ends) {
+  Mesh mesh;
+  mesh.faces = hull.complex().finite_faces();
+  std::vector<std::uint32_t> number(ends.size(), 0);
+  for (Mesh::Face& face : mesh.faces) {
+    for (std::uint32_t& vertex : face) {
+      if (number[vertex] == 0) {
+        mesh.vertices.push_back(ends[vertex].end);
+        number[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
+      }
+      vertex = number[vertex] - 1;
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 Wrap wrap_around(const Context& context, RaySource& source, const EndsSurvey& survey, double curvature,
                  double sign) {
-  RadialMap map{middle_of(context, source, survey, sign), curvature, sign};
+  RadialMap map{snapped(middle_of(context, source, survey, sign), survey.bounds), curvature, sign};
   source.rewind();
   const auto sides = static_cast<std::size_t>(
       std::clamp(std::sqrt(static_cast<double>(survey.bounded) / (6.0 * 16.0)), 1.0, 128.0));
@@ -169,7 +216,7 @@ Wrap wrap_around(const Context& context, RaySource& source, const EndsSurvey& su
   for (const Furthest& one : few)
     furthest = std::max(furthest, one.squared);
   if (furthest == 0.0) throw Error(ErrorCode::no_data, "all ends are at one place");
-  const double per_unit = static_cast<double>(kSpaceSteps - 1) / std::sqrt(furthest);
+  const double per_unit = 1.0 / step_not_below(std::sqrt(furthest) / static_cast<double>(kSpaceSteps - 1));
   const std::vector<MappedEnd> ends =
       outside_of(context, source, map, per_unit, InnerBody(few, per_unit, 2 * sides));
   std::vector<SpacePoint> points;
@@ -179,17 +226,10 @@ Wrap wrap_around(const Context& context, RaySource& source, const EndsSurvey& su
   const auto hull = SpaceHull::make(std::move(points));
   if (hull == nullptr)
     throw Error(ErrorCode::no_data, "all ends are in one plane, so nothing is around them");
-  Wrap result{.mesh = {}, .stream = survey.stream, .bounded = survey.bounded};
-  result.mesh.faces = hull->complex().finite_faces();
-  std::vector<std::uint32_t> number(ends.size(), 0);
-  for (Mesh::Face& face : result.mesh.faces) {
-    for (std::uint32_t& vertex : face) {
-      if (number[vertex] == 0) {
-        result.mesh.vertices.push_back(ends[vertex].end);
-        number[vertex] = static_cast<std::uint32_t>(result.mesh.vertices.size());
-      }
-      vertex = number[vertex] - 1;
-    }
+  Wrap result{.mesh = mesh_of(*hull, ends), .stream = survey.stream, .bounded = survey.bounded};
+  if (sign < 0.0 && !hull->holds({0, 0, 0})) {
+    source.rewind();
+    result.cut_off = count_cut_off(context, source, result.mesh, 1e-6 * survey.bounds.extent().maxCoeff());
   }
   return result;
 }

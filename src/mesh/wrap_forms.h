@@ -1,11 +1,14 @@
 #pragma once
-/// The two forms behind mesh/wrap.h.
+/// What is behind mesh/wrap.h and mesh/full_wrap.h.
 
 #include "ends_survey.h"
 
 #include <raycloud/mesh/wrap.h>
 
 namespace ray {
+
+/// Of a source that is then at its beginning again. Throws if there is nothing to wrap, or no such curvature.
+[[nodiscard]] EndsSurvey survey_for_wrap(const Context& context, RaySource& source, double curvature);
 
 /// Upwards for `sign` 1, downwards for -1. The source is at its beginning.
 [[nodiscard]] Wrap wrap_from_below(const Context& context, RaySource& source, const EndsSurvey& survey,

@@ -1,4 +1,5 @@
 #include "convex_ceiling.h"
+#include "insertion_order.h"
 #include "lower_hull.h"
 #include "plan_steps.h"
 #include "wrap_forms.h"
@@ -15,7 +16,8 @@ namespace {
 /// An end where the probe is flat: raised by curvature/2 ρ², so that lower paraboloids become planes.
 struct LiftedEnd {
   PlanPoint point;
-  double z = 0.0;  ///< m, as it was
+  double z = 0.0;           ///< m, as it was
+  std::uint64_t curve = 0;  ///< place of the point on the curve of `insertion_order.h`
 };
 
 class Lift {
@@ -116,7 +118,10 @@ std::vector<LiftedEnd> below(const Context& context, RaySource& source, const Li
           if (rays.bounded[i] == 0) continue;
           const LiftedEnd end = lift(rays.ends[i]);
           const double most = ceiling.at(share(end.point.x), share(end.point.y));
-          if (static_cast<double>(end.point.height) <= most) ends.push_back(end);
+          if (static_cast<double>(end.point.height) > most) continue;
+          ends.push_back(end);
+          ends.back().curve = place_on_curve(std::array<std::uint32_t, 2>{
+              static_cast<std::uint32_t>(end.point.x) * 2, static_cast<std::uint32_t>(end.point.y) * 2});
         }
         return ends;
       },
@@ -124,6 +129,23 @@ std::vector<LiftedEnd> below(const Context& context, RaySource& source, const Li
         all.insert(all.end(), ends.begin(), ends.end());
       });
   return all;
+}
+
+/// Each near the one before, as the hull wants them; those at one place in the order of the rays.
+std::vector<LiftedEnd> along_curve(const Context& context, const std::vector<LiftedEnd>& ends) {
+  struct Key {
+    std::uint64_t curve;
+    std::uint32_t index;
+  };
+  std::vector<Key> keys(ends.size());
+  for (std::uint32_t i = 0; i < keys.size(); ++i)
+    keys[i] = {ends[i].curve, i};
+  parallel_sort(context, keys.begin(), keys.end(),
+                [](const Key& a, const Key& b) { return a.curve < b.curve; });
+  std::vector<LiftedEnd> sorted(ends.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    sorted[i] = ends[keys[i].index];
+  return sorted;
 }
 
 Mesh mesh_of(const LowerHull& hull, const std::vector<LiftedEnd>& ends, const Lift& lift) {
@@ -152,12 +174,12 @@ Wrap wrap_from_below(const Context& context, RaySource& source, const EndsSurvey
   std::vector<PlanPoint> lowest = lowest_of_cells(context, source, lift, sides);
   source.rewind();
   const ConvexCeiling ceiling = ceiling_of(std::move(lowest), 2 * sides);
-  const std::vector<LiftedEnd> ends = below(context, source, lift, ceiling);
+  const std::vector<LiftedEnd> ends = along_curve(context, below(context, source, lift, ceiling));
   std::vector<PlanPoint> points;
   points.reserve(ends.size() + 1);
   for (const LiftedEnd& end : ends)
     points.push_back(end.point);
-  const auto hull = LowerHull::make(std::move(points));
+  const auto hull = LowerHull::make_along_curve(std::move(points));
   if (hull == nullptr) throw Error(ErrorCode::no_data, "all ends are on one line of the map");
   check_cancelled(context);
   hull->insert_all();

@@ -1,9 +1,13 @@
 #pragma once
-/// How the triangles of a mesh hang together: what is a surface, what is torn, and what is tangled.
+/// How the triangles of a mesh hang together: what is a surface, what is torn, what is tangled, and what goes
+/// through itself.
 
 #include <raycloud/core/mesh.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace ray {
 
@@ -40,5 +44,14 @@ struct MeshTopology {
 
 /// O(n log n) in the faces; 40 bytes a face. Precondition: indices in range.
 [[nodiscard]] MeshTopology topology_of(const Mesh& mesh);
+
+/// Pairs of faces, the lower first and in order, that meet elsewhere than at a corner, an edge or no place of
+/// both: they cross, touch, overlap or are the same. Exact, for coordinates whose products of three are
+/// doubles (1e-100 to 1e100). Corners at one place are one, whether or not the mesh is welded; faces without
+/// an area meet nothing.
+///
+/// O(n log n) in the faces of a surface whose triangles are not mostly needles, some 2 µs a face; 150 bytes
+/// a face. Precondition: indices in range, finite vertices.
+[[nodiscard]] std::vector<std::array<std::uint32_t, 2>> self_intersections(const Mesh& mesh);
 
 }  // namespace ray

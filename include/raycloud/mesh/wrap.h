@@ -16,6 +16,7 @@ struct Wrap {
   Mesh mesh;
   StreamCounts stream;
   std::uint64_t bounded = 0;  ///< rays, whose ends are wrapped
+  std::uint64_t cut_off = 0;  ///< ends on the wrong side of the mesh by more than 1e-6 of their extent
 };
 
 /// The fast form of the wrap: without overhangs, as seen from below (`upwards`), above (`downwards`), or from
@@ -29,7 +30,8 @@ struct Wrap {
 /// `inwards` and `outwards` probe with conics that have a focus in the middle of the cloud and the given
 /// curvature at their apex; the mesh is a sphere with fronts outside. The middle is the mean of the ends for
 /// inwards, of the starts for outwards. No end lies outside of the inwards mesh. None lies within the
-/// outwards mesh, if the ends are all around the middle.
+/// outwards mesh, if the ends are all around the middle, as in a room; where they are not the mesh is no good
+/// (it may go through itself), and ends that it cuts off are counted.
 ///
 /// Reads the source three times or more, rewinding it. Memory: what the probe may touch, some 200 bytes an
 /// end, which is a few percent of a cloud but all of it for a large curvature. The result depends on neither

@@ -137,6 +137,7 @@ HeightErrors errors_of(const Mesh& mesh) {
 TEST(Terrain, LiesInTheMiddleOfNoise) {
   const Terrain terrain = terrain_of(hillside({}));
   EXPECT_TRUE(topology_of(terrain.mesh).is_disc());
+  EXPECT_TRUE(self_intersections(terrain.mesh).empty());
   const HeightErrors errors = errors_of(terrain.mesh);
   EXPECT_LT(errors.root_mean_square, 0.03);
   EXPECT_LT(std::abs(errors.mean), 0.01);
