@@ -31,7 +31,7 @@ std::string three(const Eigen::Vector3d& values, const char* unit) {
 }  // namespace
 
 Found found(const AxesAlignment& alignment) {
-  Found result{alignment.pose, {}, {}};
+  Found result{alignment.pose, {}, {}, {}};
   result.report = formatted("walls            %.0f m2 along the axes, %.0f %% of what is upright\n",
                             alignment.wall_area, 100.0 * alignment.wall_share) +
                   formatted("ground           %.0f m2\n", alignment.ground_area) +
@@ -40,8 +40,8 @@ Found found(const AxesAlignment& alignment) {
   return result;
 }
 
-Found found(const CloudAlignment& alignment) {
-  Found result{alignment.pose, {}, {}};
+Found found(const CloudAlignment& alignment, bool nonrigid) {
+  Found result{alignment.pose, alignment.bend, {}, {}};
   const Eigen::Vector<double, 6> sigmas = alignment.covariance.diagonal().cwiseSqrt();
   const Eigen::Vector3d turns = kDegrees * sigmas.head<3>(), shifts = sigmas.tail<3>();
   result.report =
@@ -51,6 +51,11 @@ Found found(const CloudAlignment& alignment) {
       formatted("residual         %.4f m RMSE of %.0f patches\n", alignment.rmse, alignment.patches) +
       formatted("standard error   %.4f,%.4f,%.4f degrees, %.4f,%.4f,%.4f m\n", turns.x(), turns.y(),
                 turns.z(), shifts.x(), shifts.y(), shifts.z());
+  if (nonrigid)
+    result.report += alignment.bend.is_none()
+                         ? std::string("bend             none: rigid is as good\n")
+                         : formatted("bend             %.4f m at most, criterion better by %.0f\n",
+                                     alignment.bend_size, alignment.bend_gain);
   result.notes = {{"overlap", formatted("%.4f", alignment.overlap)},
                   {"reference_overlap", formatted("%.4f", alignment.reference_overlap)},
                   {"agreement", formatted("%.4f", alignment.agreement)},

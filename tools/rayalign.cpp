@@ -31,6 +31,10 @@ wherever it was and however it was turned about the vertical; with `--local`, ne
 moved in between. Of many poses the one counts that agrees best with surfaces and with free space: what
 one cloud has where the rays of the other went through counts against it.
 
+With `--nonrigid` the cloud may be bent a little, too: a quadratic function of x and y for each
+coordinate, as long maps need that have drifted. It is, only if that fits better than chance and nine
+more numbers would. Each ray moves as a whole, its start with its end.
+
 Where the answer is not certain (the clouds have too little in common, something speaks against every
 pose, or another pose fits nearly as well) the command says so, writes nothing and exits with 1.
 
@@ -56,7 +60,10 @@ can be written to a file and applied to any other cloud with `--apply`.)",
                 {.name = "level",
                  .help = "take out roll and pitch too, up to 15 degrees",
                  .usages = {"axes"}},
-                {.name = "local", .help = "look only near where the cloud is", .usages = {"reference"}}},
+                {.name = "local", .help = "look only near where the cloud is", .usages = {"reference"}},
+                {.name = "nonrigid",
+                 .help = "bend the cloud, too, where it clearly fits better then",
+                 .usages = {"reference"}}},
     .writes = "CLOUD_aligned.ply",
     .memory =
         "Some 10 to 60 bytes for each ray of both clouds, the less the denser they are, whatever --memory "
@@ -72,14 +79,16 @@ Found onto_reference(const Match& match, const Session& session) {
   const auto source = ray::open_ray_cloud(match.text("CLOUD"));
   const auto reference = ray::open_ray_cloud(match.text("REFERENCE"));
   const ray::CloudAlignment alignment =
-      align_clouds(session.context(), *source, *reference, {.local = match.has("--local")});
+      align_clouds(session.context(), *source, *reference,
+                   {.local = match.has("--local"), .nonrigid = match.has("--nonrigid")});
   if (!alignment.doubt.empty())
     throw ray::Error(ray::ErrorCode::no_data, match.text("CLOUD") + ": not aligned: " + alignment.doubt);
-  return ray::tools::found(alignment);
+  return ray::tools::found(alignment, match.has("--nonrigid"));
 }
 
 Found found_by(const Match& match, const Session& session) {
-  if (match.has("--apply")) return {ray::read_transform(match.text("--apply")), {}, {}};
+  if (match.has("--apply"))
+    return {ray::read_transform(match.text("--apply")), ray::read_bend(match.text("--apply")), {}, {}};
   return match.usage() == "axes" ? axes_of(match, session) : onto_reference(match, session);
 }
 
@@ -102,11 +111,12 @@ void run(const Match& match, Session& session) {
   const path output = output_of(match);
   const Found found = found_by(match, session);
   if (match.has("--output_transform"))
-    write_transform(match.text("--output_transform"), found.pose, found.notes);
+    write_transform(match.text("--output_transform"), found.pose, found.notes, found.bend);
   session.print(ray::tools::as_text(found));
   ray::tools::run_cloud_to_cloud(session, {.input = match.text("CLOUD"), .output = output},
                                  [&](ray::RaySource& source, ray::RaySink& sink) {
-                                   return transform_cloud(session.context(), source, sink, found.pose);
+                                   return transform_cloud(session.context(), source, sink, found.pose,
+                                                          found.bend);
                                  });
 }
 

@@ -14,7 +14,9 @@ void print_far_from_others();
 void print_transients();
 void print_opacity();
 void print_merging();
+void print_axes();
 void print_alignment();
+void print_bends();
 void print_terrain();
 void print_ground_samples();
 

@@ -12,13 +12,49 @@
 namespace ray::align {
 namespace {
 
-/// Columns of space, eight patches wide, and what is in them.
+constexpr double kColumn = 8.0;  // patches
+
+/// What the other cloud says of a patch.
+struct Seen {
+  bool is_same = false, is_beside = false, is_empty = false;
+  double cost = 1.0;  ///< from 0, on the surface, to 1
+
+  [[nodiscard]] bool is_known() const { return is_same || is_beside || is_empty; }
+};
+
+Seen seen_of(const Patch& patch, const Pose& pose, const Observed& other, double tolerance) {
+  constexpr double kAligned = 0.8;   // cosine
+  constexpr double kThrough = 0.75;  // widths
+  const Eigen::Vector3d place = pose * patch.mean, normal = pose.rotation * patch.normal;
+  const bool is_flat = patch.is_flat();
+  Seen seen;
+  double nearest = std::numeric_limits<double>::infinity(), nearest_mean = nearest;
+  other.level.each_near(place, [&](const Patch& surface) {
+    const Eigen::Vector3d apart = surface.mean - place;
+    nearest_mean = std::min(nearest_mean, apart.norm());
+    const bool fits = is_flat && surface.is_flat();
+    // A floor beside the place of a wall says nothing of the wall: the other cloud may end there.
+    if (fits && surface.normal.dot(normal) < kAligned) return;
+    seen.is_beside = seen.is_beside || fits || !is_flat;
+    nearest = std::min(nearest, fits ? std::abs(surface.normal.dot(apart)) : apart.norm());
+  });
+  const double within = is_flat ? tolerance : other.level.width();
+  seen.is_same = nearest < within;
+  if (seen.is_same) seen.cost = nearest * nearest / (within * within);
+  // Rays along a surface cross its cubes too, and the other cloud may end there: they must have gone through.
+  const Eigen::Vector3d step = (is_flat ? kThrough * other.level.width() : 0.0) * normal;
+  seen.is_empty = !seen.is_same && !seen.is_beside && nearest_mean > kThrough * other.level.width() &&
+                  other.free.is_crossed(place + step) && other.free.is_crossed(place - step);
+  return seen;
+}
+
+/// Columns of space and what is in them.
 class Columns {
  public:
   explicit Columns(double width) : width_(width) {}
 
   void add(const Eigen::Vector3d& place, bool is_against) {
-    const Eigen::Array2d cell = (place.head<2>().array() / (kPatches * width_)).floor();
+    const Eigen::Array2d cell = (place.head<2>().array() / (kColumn * width_)).floor();
     seen_.push_back({{cell.x(), cell.y()}, is_against});
   }
 
@@ -37,7 +73,6 @@ class Columns {
   }
 
  private:
-  static constexpr double kPatches = 8.0;
   double width_;
   std::vector<std::pair<std::pair<double, double>, bool>> seen_;
 };
@@ -65,30 +100,50 @@ std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t mos
 
 Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose, const Observed& other,
                        double tolerance) {
-  constexpr double kAligned = 0.8;  // cosine
   Agreement agreement;
   Columns columns(other.level.width());
   for (const auto& [patch, is_clean] : patches) {
-    const Eigen::Vector3d place = pose * patch.mean, normal = pose.rotation * patch.normal;
-    const bool is_flat = patch.is_flat();
-    Agreement::Counts& counts = is_flat && std::abs(normal.z()) < 0.5 ? agreement.upright : agreement.others;
-    bool beside = false;
-    double nearest = std::numeric_limits<double>::infinity();
-    other.level.each_near(place, [&](const Patch& surface) {
-      beside = true;
-      const Eigen::Vector3d apart = surface.mean - place;
-      const bool fits = is_flat && surface.is_flat();
-      if (fits && surface.normal.dot(normal) < kAligned) return;
-      nearest = std::min(nearest, fits ? std::abs(surface.normal.dot(apart)) : apart.norm());
-    });
-    const bool is_same = nearest < (is_flat ? tolerance : other.level.width());
-    const bool is_empty = !is_same && !beside && other.free.is_crossed(place);
-    (is_same ? counts.same : beside ? counts.other : is_empty ? counts.empty : counts.unknown) += 1.0;
-    const bool is_against = is_empty || (is_clean && !is_same && beside && &counts == &agreement.upright);
-    if (is_same || is_against) columns.add(place, is_against);
+    const Seen seen = seen_of(patch, pose, other, tolerance);
+    const bool is_upright = patch.is_flat() && std::abs((pose.rotation * patch.normal).z()) < 0.5;
+    Agreement::Counts& counts = is_upright ? agreement.upright : agreement.others;
+    (seen.is_same     ? counts.same
+     : seen.is_beside ? counts.other
+     : seen.is_empty  ? counts.empty
+                      : counts.unknown) += 1.0;
+    const bool is_against = seen.is_empty || (is_clean && is_upright && !seen.is_same && seen.is_beside);
+    if (seen.is_same || is_against) columns.add(pose * patch.mean, is_against);
   }
   agreement.against = columns.against();
   return agreement;
+}
+
+Preference preference_of(std::span<const JudgedPatch> patches, const Pose& pose, const Pose& rival,
+                         const Observed& other, double tolerance) {
+  // In the frame of the cloud, so that a column holds the same patches in both poses.
+  constexpr double kSmallColumn = 4.0;  // cubes of free space
+  const double width = kSmallColumn * other.free.width();
+  std::vector<std::pair<std::pair<double, double>, double>> differences;
+  for (const JudgedPatch& judged : patches) {
+    const Patch& patch = judged.patch;
+    const Seen at_pose = seen_of(patch, pose, other, tolerance),
+               at_rival = seen_of(patch, rival, other, tolerance);
+    if (!at_pose.is_known() || !at_rival.is_known()) continue;
+    const double difference = at_rival.cost - at_pose.cost;
+    const Eigen::Array2d cell = (patch.mean.head<2>().array() / width).floor();
+    differences.push_back({{cell.x(), cell.y()}, difference});
+  }
+  std::sort(differences.begin(), differences.end());
+  Preference preference;
+  double column = 0.0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    column += differences[i].second;
+    if (i + 1 < differences.size() && differences[i + 1].first == differences[i].first) continue;
+    preference.sum += column;
+    preference.squares += column * column;
+    column = 0.0;
+  }
+  preference.count = static_cast<double>(differences.size());
+  return preference;
 }
 
 }  // namespace ray::align

@@ -7,6 +7,7 @@
 
 #include <raycloud/core/pose.h>
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -48,6 +49,20 @@ struct JudgedPatch {
   bool is_clean;
 };
 [[nodiscard]] std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t most);
+
+/// How much better one pose explains what is known in both than another does: the sum over patches of how far
+/// they are from surfaces, from 0 to 1 each, and the sum of its squares over columns of space.
+struct Preference {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  /// In standard errors, if columns are independent: where one thing has moved it is one column that says so.
+  [[nodiscard]] double sigmas() const { return squares > 0.0 ? sum / std::sqrt(squares) : 0.0; }
+  Preference& operator+=(const Preference& more) {
+    sum += more.sum, squares += more.squares, count += more.count;
+    return *this;
+  }
+};
+[[nodiscard]] Preference preference_of(std::span<const JudgedPatch> patches, const Pose& pose,
+                                       const Pose& rival, const Observed& other, double tolerance);
 
 /// `tolerance` (m): how far from a surface is on it.
 [[nodiscard]] Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose,

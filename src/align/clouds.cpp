@@ -1,3 +1,5 @@
+#include "bend_fit.h"
+#include "bent_source.h"
 #include "hypotheses.h"
 
 #include <raycloud/align/clouds.h>
@@ -45,7 +47,7 @@ Matrix6 covariance_of(const FineFit& fit) {
   constexpr double kTogether = 10.0;  // patches
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(fit.information);
   const Vector6 values = solver.eigenvalues().cwiseMax(1e-12 * solver.eigenvalues().maxCoeff() + 1e-300);
-  return kTogether * fit.rmse * fit.rmse * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
+  return kTogether * fit.variance * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
          solver.eigenvectors().transpose();
 }
 
@@ -68,48 +70,114 @@ struct Judged {
   std::vector<Hypothesis> aside;
 };
 
-Judged judge(const Context& context, const Known& cloud, const Known& reference, bool local) {
+Judged judge(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
+             bool local) {
   constexpr std::size_t kKept = 24;
   Judged judged;
   if (!local) judged.all = rough_hypotheses(context, cloud, reference);
   judged.all.resize(std::min(judged.all.size(), kKept));
   const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
   judged.all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
-  judged.all = fitted(context, cloud, reference, std::move(judged.all));
-  judged.aside =
-      fitted(context, cloud, reference, aside_of(context, judged.all.front().pose, cloud, reference));
-  if (judged.aside.front().score > judged.all.front().score)
-    judged.all.insert(judged.all.begin(), judged.aside.front());
+  judged.all = fitted(context, cloud, reference, jury, std::move(judged.all));
+  jury.put_best_first(judged.all);
+  judged.aside = aside_of(context, judged.all.front().pose, cloud, reference);
+  judged.aside = fitted(context, cloud, reference, jury, std::move(judged.aside));
+  judged.aside.insert(judged.aside.begin(), judged.all.front());
+  sort_by_score(judged.aside);
+  jury.put_best_first(judged.aside);
+  judged.all.insert(judged.all.begin(), judged.aside.front());
   return judged;
 }
 
-/// Why the best is not to be trusted; empty if it is. Of the others, those that came to lie elsewhere are
-/// rivals, and those that began beside it and came to about the same place should have come to just that.
-std::string doubt_of(const Judged& judged, const Known& cloud, double overlap) {
-  constexpr double kLeastSame = 100.0, kLeastOverlap = 0.1, kMostAgainst = 0.02, kMostRival = 0.7;
-  constexpr double kLoose = 0.25;  // widths
+/// Why the best is not to be trusted; empty if it is.
+struct Doubt {
+  std::string text;
+  bool is_elsewhere = false;  ///< another place is as good
+};
+
+/// Of the others, those that came to lie elsewhere are rivals, and those that began beside it and came to
+/// about the same place should have come to just that.
+Doubt doubt_of(const Judged& judged, const Known& cloud, const Jury& jury, double overlap) {
+  constexpr double kLeastOverlap = 0.1, kMostRival = 0.7, kSigmas = 2.5;
+  constexpr double kRefuted = 2.0;  // times as much against it as against the best
+  constexpr double kCleaner = 0.5;  // as much against it as against the best
+  constexpr double kNearly = 0.01;  // against the best, for a cleaner one to matter whatever its score
+  constexpr double kLoose = 0.25;   // widths
   const Hypothesis& best = judged.all.front();
-  Agreement both = best.there;
-  both += best.back;
-  const double same = both.all().same, against = share(both.against, same + both.against);
+  const double same = best.there.all().same + best.back.all().same, against = best.against_share();
   const std::string found = "the best overlap found is " + percent(overlap);
-  if (same < kLeastSame || overlap < kLeastOverlap || !(best.score > 0.0))
-    return "too few surfaces are in both: " + found;
-  if (against > kMostAgainst)
-    return percent(against) +
-           " of the surfaces would be where the other cloud has seen that there are none: " + found;
-  const double rival = kMostRival * best.score;
+  if (same < Hypothesis::kLeastSame || overlap < kLeastOverlap || !(best.score > 0.0))
+    return {"too few surfaces are in both: " + found};
+  if (best.is_refuted())
+    return {percent(against) +
+            " of the surfaces would be where the other cloud has seen that there are none: " + found};
+  const auto is_rival = [&](const Hypothesis& other) {
+    const bool is_refuted = other.is_refuted() && other.against_share() > kRefuted * against;
+    const bool is_cleaner = against > kNearly && other.score > 0.0 &&
+                            other.there.all().same + other.back.all().same >= Hypothesis::kLeastSame &&
+                            other.against_share() < kCleaner * against;
+    return (other.score > kMostRival * best.score || is_cleaner) && !is_refuted &&
+           !jury.is_clearly_better(best.pose, other.pose, kSigmas);
+  };
   const auto is_elsewhere = [&](const Hypothesis& other) {
-    return other.score > rival && !is_same_place(other.pose, best.pose, cloud);
+    return !is_same_place(other.pose, best.pose, cloud) && is_rival(other);
   };
   const auto is_loose = [&](const Hypothesis& other) {
     const double apart = (other.pose.translation - best.pose.translation).norm();
-    return other.score > rival && apart > kLoose * cloud.fine.width();
+    return apart > kLoose * cloud.fine.width() && is_rival(other);
   };
   if (std::any_of(judged.all.begin(), judged.all.end(), is_elsewhere) ||
       std::any_of(judged.aside.begin(), judged.aside.end(), is_loose))
-    return "it fits nearly as well elsewhere: " + found;
+    return {"it fits nearly as well elsewhere: " + found, true};
   return {};
+}
+
+/// An alignment, and its pose from the origin of one cloud to that of the other.
+struct Placed {
+  CloudAlignment alignment;
+  Pose pose;
+  bool is_elsewhere = false;
+};
+
+Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
+  const Jury jury(cloud, reference);
+  const Judged judged = judge(context, cloud, reference, jury, local);
+  const Hypothesis& best = judged.all.front();
+  const FineFit fit = last_fit(context, cloud, reference, best.pose);
+  Placed placed;
+  placed.pose = fit.pose;
+  CloudAlignment& alignment = placed.alignment;
+  alignment.pose = in_world(fit.pose, cloud, reference);
+  alignment.rmse = fit.rmse;
+  alignment.patches = fit.count;
+  alignment.covariance = covariance_of(fit);
+  alignment.centre = fit.centre + reference.surfaces.survey.origin;
+  const Agreement::Counts there = best.there.all(), back = best.back.all();
+  alignment.overlap = share(there.same, there.known() + there.unknown);
+  alignment.reference_overlap = share(back.same, back.known() + back.unknown);
+  alignment.agreement = share(there.same + back.same, there.known() + back.known());
+  const Doubt doubt = doubt_of(judged, cloud, jury, std::max(alignment.overlap, alignment.reference_overlap));
+  alignment.doubt = doubt.text;
+  placed.is_elsewhere = doubt.is_elsewhere;
+  return placed;
+}
+
+/// The same as for a rigid one, of the cloud as it is after the bend: from there, so nearly nothing moves.
+CloudAlignment judge_bent(const Context& context, const BendFit& fit, RaySource& source, const Known& cloud,
+                          const Known& reference) {
+  const Pose pose = in_world(fit.pose, cloud, reference);
+  Bend bend = fit.bend;
+  bend.centre += reference.surfaces.survey.origin.head<2>();
+  BentSource bent(source, pose, bend);
+  const Known as_bent = known_of(context, bent, survey_ends(context, bent), cloud.surfaces.width);
+  CloudAlignment alignment = place(context, as_bent, reference, true).alignment;
+  alignment.pose = pose;
+  alignment.bend = bend;
+  alignment.bend_gain = fit.gain;
+  alignment.rmse = fit.rmse;
+  alignment.patches = fit.count;
+  alignment.bend_size = fit.size;
+  return alignment;
 }
 
 }  // namespace
@@ -123,21 +191,14 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   const double width = std::max(patch_width(of_cloud), patch_width(of_reference));
   const Known cloud = known_of(context, cloud_source, of_cloud, width),
               reference = known_of(context, reference_source, of_reference, width);
-
-  const Judged judged = judge(context, cloud, reference, rule.local);
-  const Hypothesis& best = judged.all.front();
-  const FineFit fit = last_fit(context, cloud, reference, best.pose);
-  CloudAlignment alignment;
-  alignment.pose = in_world(fit.pose, cloud, reference);
-  alignment.rmse = fit.rmse;
-  alignment.patches = fit.count;
-  alignment.covariance = covariance_of(fit);
-  alignment.centre = fit.centre + of_reference.origin;
-  const Agreement::Counts there = best.there.all(), back = best.back.all();
-  alignment.overlap = share(there.same, there.known() + there.unknown);
-  alignment.reference_overlap = share(back.same, back.known() + back.unknown);
-  alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  alignment.doubt = doubt_of(judged, cloud, std::max(alignment.overlap, alignment.reference_overlap));
+  const Placed placed = place(context, cloud, reference, rule.local);
+  CloudAlignment alignment = placed.alignment;
+  // Where another place is as good, a bend does not tell which.
+  if (rule.nonrigid && !placed.is_elsewhere) {
+    const BendFit fit = fit_bend(context, cloud, reference, placed.pose);
+    alignment.bend_gain = fit.gain;
+    if (fit.is_better()) alignment = judge_bent(context, fit, cloud_source, cloud, reference);
+  }
   alignment.dropped = of_cloud.dropped + of_reference.dropped;
   return alignment;
 }

@@ -2,7 +2,7 @@
 
 #include <raycloud/exec/parallel.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -25,34 +25,31 @@ Equation sum_of(Equation a, const Equation& b) {
   return a;
 }
 
-/// The nearest patch of the same kind whose surface heads the same way.
-const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, const Eigen::Vector3d& place,
-                            const Eigen::Matrix3d& rotation) {
-  constexpr double kAligned = 0.8;  // cosine
-  const bool is_flat = patch.is_flat(), is_thin = patch.is_thin();
-  if (!is_flat && !is_thin) return nullptr;
-  const Eigen::Vector3d heading = rotation * (is_flat ? patch.normal : patch.along);
-  const Patch* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  reference.each_near(place, [&](const Patch& other) {
-    const double distance2 = (other.mean - place).squaredNorm();
-    if (distance2 >= least) return;
-    const bool fits = is_flat ? other.is_flat() && other.normal.dot(heading) > kAligned
-                              : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
-    if (fits) least = distance2, nearest = &other;
-  });
-  return nearest;
-}
-
-/// Adds one equation: the distance `off` (m) along `direction` is to vanish.
-void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
-         Equation& equation) {
+/// That the distance `off` (m) along `direction` is to vanish, for small turns about the centre and shifts.
+void pull_along(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
+                Equation& equation) {
   Vector6 row;
   row << arm.cross(direction), direction;
   equation.information.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
   equation.pull += weight * off * row;
+}
+
+void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
+         Equation& equation) {
+  pull_along(arm, direction, off, weight, equation);
   equation.squares += weight * off * off;
   equation.weights += weight;
+}
+
+/// Noise tilts normals, so that of thousands of patches of a plane each seems to tell a little of shifts
+/// within it, and all together pull somewhere. Takes away what normals of that variance are expected to add
+/// (corrected least squares, Fuller 1987).
+void correct_for_tilt(const Patch& patch, const Eigen::Vector3d& arm, const Eigen::Vector3d& apart,
+                      double weight, Equation& equation) {
+  const double noise = weight * patch.variances[0] / patch.count;
+  const Eigen::Vector3d across = patch.normal.cross(patch.along);
+  pull_along(arm, across, across.dot(apart), -noise / patch.variances[1], equation);
+  pull_along(arm, patch.along, patch.along.dot(apart), -noise / patch.variances[2], equation);
 }
 
 Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference, const FineFit& at,
@@ -75,7 +72,10 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
     if (patch.is_flat()) {
       const double off = other->normal.dot(apart);
       const double weight = weight_of(off, variance_of_mean(patch, 0) + variance_of_mean(*other, 0));
-      if (weight > 0.0) add(arm, other->normal, off, weight, equation), equation.count += 1.0;
+      if (!(weight > 0.0)) continue;
+      add(arm, other->normal, off, weight, equation);
+      correct_for_tilt(*other, arm, apart, weight, equation);
+      equation.count += 1.0;
     } else {
       const Eigen::Vector3d across = apart - other->along * other->along.dot(apart);
       const double off = across.norm();
@@ -90,20 +90,24 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
   return equation;
 }
 
-Vector6 step_of(Equation equation, bool upright) {
-  constexpr double kDamping = 1e-6;
+Vector6 step_of(Equation equation, bool upright, double damping) {
   Matrix6 information = equation.information.selfadjointView<Eigen::Lower>();
   if (upright) {
     information.topRows<2>().setZero(), information.leftCols<2>().setZero();
     equation.pull.head<2>().setZero();
   }
-  // What nothing holds stays where it is: damping is by the largest information of turns and of shifts.
+  // Turns and shifts are made alike by the largest information of either.
   const double turns = information.diagonal().head<3>().maxCoeff(),
                shifts = information.diagonal().tail<3>().maxCoeff();
-  for (Eigen::Index i = 0; i < 6; ++i)
-    information(i, i) += kDamping * (i < 3 ? turns : shifts) + 1e-300;
-  if (upright) information(0, 0) = information(1, 1) = 1.0;
-  return information.ldlt().solve(equation.pull);
+  if (!(turns > 0.0 && shifts > 0.0)) return Vector6::Zero();
+  Vector6 scale;
+  scale << Eigen::Vector3d::Constant(1.0 / std::sqrt(turns)),
+      Eigen::Vector3d::Constant(1.0 / std::sqrt(shifts));
+  const Matrix6 scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
+  const Vector6 values = (solver.eigenvalues().cwiseMax(0.0).array() + damping).matrix();
+  const Vector6 pull = solver.eigenvectors().transpose() * (scale.asDiagonal() * equation.pull);
+  return scale.asDiagonal() * (solver.eigenvectors() * pull.cwiseQuotient(values));
 }
 
 template <class Sum>
@@ -120,10 +124,11 @@ FineFit fit(std::span<const Patch> patches, const Pose& start, const FineRule& r
     at.count = equation.count;
     at.information = equation.information.template selfadjointView<Eigen::Lower>();
     at.rmse = equation.weights > 0.0 ? std::sqrt(equation.squares / equation.weights) : 0.0;
+    at.variance = equation.count > 0.0 ? equation.squares / equation.count : 0.0;
     constexpr double kLeastPatches = 6.0;
-    if (equation.count < kLeastPatches) return at;
-    const Vector6 change = step_of(equation, rule.upright);
-    if (!change.allFinite()) return at;
+    if (equation.count < kLeastPatches || !(equation.weights > 0.0)) return at;
+    const Vector6 change = step_of(equation, rule.upright, rule.damping);
+    if (!change.allFinite() || !at.information.allFinite()) return at;
     const Eigen::Vector3d turn = change.head<3>(), shift = change.tail<3>();
     const Eigen::Matrix3d rotation = rotation_pose(turn).rotation;
     at.pose.translation = rotation * (at.pose.translation - at.centre) + at.centre + shift;
@@ -136,6 +141,24 @@ FineFit fit(std::span<const Patch> patches, const Pose& start, const FineRule& r
 }
 
 }  // namespace
+
+const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, const Eigen::Vector3d& place,
+                            const Eigen::Matrix3d& rotation) {
+  constexpr double kAligned = 0.8;  // cosine
+  const bool is_flat = patch.is_flat(), is_thin = patch.is_thin();
+  if (!is_flat && !is_thin) return nullptr;
+  const Eigen::Vector3d heading = rotation * (is_flat ? patch.normal : patch.along);
+  const Patch* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  reference.each_near(place, [&](const Patch& other) {
+    const double distance2 = (other.mean - place).squaredNorm();
+    if (distance2 >= least) return;
+    const bool fits = is_flat ? other.is_flat() && other.normal.dot(heading) > kAligned
+                              : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
+    if (fits) least = distance2, nearest = &other;
+  });
+  return nearest;
+}
 
 FineFit fit_patches(std::span<const Patch> patches, const PatchLevel& reference, const Pose& start,
                     const FineRule& rule) {

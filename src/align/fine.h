@@ -20,11 +20,14 @@ struct FineRule {
   double gate = 0.5;     ///< m, a patch counts by Tukey's weight of its distance from the other's plane
   int steps = 20;        ///< most
   bool upright = false;  ///< turn about the vertical only
+  /// Of the largest information: what is held much less than that hardly moves.
+  double damping = 3e-4;
 };
 
 struct FineFit {
   Pose pose;                                         ///< from the origin of one cloud to that of the other
   Matrix6 information = Matrix6::Zero();             ///< of the patches, with their weights, for 1 m of noise
+  double variance = 0.0;                             ///< m², of a patch of weight 1
   double rmse = 0.0;                                 ///< m, weighted
   double count = 0.0;                                ///< of patches that found another
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m, about which turns are
@@ -39,6 +42,11 @@ struct FineFit {
 /// As above, on all cores, with the same bits for any number of them.
 [[nodiscard]] FineFit fit_patches(const Context& context, std::span<const Patch> patches,
                                   const PatchLevel& reference, const Pose& start, const FineRule& rule);
+
+/// The nearest patch of the same kind whose surface heads the same way, or none, for a patch that comes to
+/// lie at `place`.
+[[nodiscard]] const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference,
+                                          const Eigen::Vector3d& place, const Eigen::Matrix3d& rotation);
 
 /// An even choice of at most so many.
 [[nodiscard]] std::vector<Patch> some_of(const std::vector<Patch>& patches, std::size_t most);

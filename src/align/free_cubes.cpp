@@ -11,6 +11,8 @@
 namespace ray::align {
 namespace {
 
+constexpr double kClear = 1.5;  // cubes
+
 struct Rays {
   std::vector<Eigen::Vector3d> starts, ends;
 };
@@ -18,7 +20,6 @@ struct Rays {
 /// How far (m) before its end a ray is to be cut, so that it is clear of the surface it hit.
 double clearance(const PatchLevel& level, const Eigen::Vector3d& end, const Eigen::Vector3d& way,
                  double length) {
-  constexpr double kClear = 1.5;         // cubes
   constexpr double kLeastSine = 0.05;    // of the angle to the surface
   constexpr double kShareUnknown = 0.2;  // of a ray to what is no surface
   double nearest = std::numeric_limits<double>::infinity(), sine = 0.0;
@@ -41,27 +42,25 @@ Rays free_parts(const Context& context, const Surfaces& surfaces, const PatchLev
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d way = (gathered[i].seen - gathered[i].sensor).cast<double>();
       const double length = way.norm();
-      if (length > 0.0)
-        cuts[i] = 1.0 - clearance(level, gathered[i].seen.cast<double>(), way, length) / length;
+      if (length > 0.0) cuts[i] = clearance(level, gathered[i].seen.cast<double>(), way, length);
     }
   });
   // A small thing seen from afar has cubes so small that a whole ray would cross millions.
   const double most = kExtents * surfaces.survey.extent;
-  const auto share_of = [most](const Eigen::Vector3d& way) { return std::min(1.0, most / way.norm()); };
+  // Where a cloud was cut, rays begin and end in the middle of a cube, perhaps just before a surface.
+  const double clear = kClear * level.width();
   Rays rays;
-  for (std::size_t i = 0; i < gathered.size(); ++i) {
-    if (cuts[i] <= 0.0) continue;
-    const Eigen::Vector3d start = gathered[i].sensor.cast<double>(),
-                          way = gathered[i].seen.cast<double>() - start;
-    rays.ends.emplace_back(start + cuts[i] * way);
-    rays.starts.emplace_back(rays.ends.back() - cuts[i] * share_of(way) * way);
-  }
-  for (const Segment& segment : surfaces.sky) {
-    const Eigen::Vector3d start = segment.start.cast<double>(), way = segment.end.cast<double>() - start;
-    if (!(way.norm() > 0.0)) continue;
-    rays.starts.push_back(start);
-    rays.ends.emplace_back(start + share_of(way) * way);
-  }
+  const auto add = [&](const Segment& ray, double at_end) {
+    const Eigen::Vector3d start = ray.start.cast<double>(), way = ray.end.cast<double>() - start;
+    const double length = way.norm(), end = length - at_end, begin = std::max(clear, end - most);
+    if (!(begin < end)) return;
+    rays.starts.emplace_back(start + begin / length * way);
+    rays.ends.emplace_back(start + end / length * way);
+  };
+  for (std::size_t i = 0; i < gathered.size(); ++i)
+    add({gathered[i].sensor, gathered[i].seen}, cuts[i]);
+  for (const Segment& segment : surfaces.sky)
+    add(segment, clear);
   return rays;
 }
 

@@ -21,6 +21,8 @@ class FreeCubes {
   /// Whether the cube of a point (m, from the origin) was crossed.
   [[nodiscard]] bool is_crossed(const Eigen::Vector3d& point) const;
 
+  [[nodiscard]] double width() const { return width_; }
+
  private:
   double width_;
   KeyTable<std::uint64_t> bricks_;  // of 4³ cubes, a bit each

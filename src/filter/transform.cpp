@@ -19,4 +19,16 @@ StreamCounts transform_cloud(const Context& context, RaySource& source, RaySink&
   });
 }
 
+StreamCounts transform_cloud(const Context& context, RaySource& source, RaySink& sink, const Pose& pose,
+                             const Bend& bend) {
+  if (bend.is_none()) return transform_cloud(context, source, sink, pose);
+  if (!pose.rotation.allFinite() || !pose.translation.allFinite() || !bend.centre.allFinite() ||
+      !bend.shifts.allFinite())
+    throw Error(ErrorCode::usage, "a cloud can only be moved by finite numbers");
+  return stream_each(context, source, sink, [&](RayCloud& rays) {
+    if (!pose.is_identity()) rays.transform(pose);
+    bend_rays(bend, rays);
+  });
+}
+
 }  // namespace ray

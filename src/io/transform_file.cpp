@@ -13,7 +13,7 @@ namespace ray {
 namespace {
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 20;  // bytes
-constexpr std::size_t kNumbers = 16;
+constexpr std::size_t kNumbers = 16, kBendNumbers = 9;
 
 void append_list(std::string& text, const Eigen::VectorXd& values) {
   text += '[';
@@ -24,22 +24,21 @@ void append_list(std::string& text, const Eigen::VectorXd& values) {
   text += ']';
 }
 
-/// What follows `matrix:`, or all of a text that has no names.
-std::string_view matrix_part(std::string_view text) {
+/// What follows a name and a colon; of a text that has no names, all where that may be.
+std::string_view part_of(std::string_view text, std::string_view name, bool nameless) {
   while (!text.empty()) {
     std::string_view rest = text;
     const std::string_view line = text::trimmed(text::take_line(text));
     if (text::is_blank(line) || text::is_comment(line)) continue;
-    constexpr std::string_view kName = "matrix:";
-    if (line.starts_with(kName)) return rest.substr(rest.find(kName) + kName.size());
-    if (line.find(':') == std::string_view::npos) return rest;
+    if (line.starts_with(name)) return rest.substr(rest.find(name) + name.size());
+    if (nameless && line.find(':') == std::string_view::npos) return rest;
   }
   return {};
 }
 
-std::vector<double> numbers_of(std::string_view text, const std::string& name) {
+std::vector<double> numbers_of(std::string_view text, std::size_t most, const std::string& name) {
   std::vector<double> numbers;
-  while (!text.empty() && numbers.size() < kNumbers) {
+  while (!text.empty() && numbers.size() < most) {
     std::string line(text::take_line(text));
     line = line.substr(0, line.find('#'));
     std::replace_if(
@@ -62,7 +61,8 @@ Eigen::Vector3d rotation_vector_deg(const Pose& pose) {
   return turn.angle() * (180.0 / std::numbers::pi) * turn.axis();
 }
 
-void write_transform(const std::filesystem::path& path, const Pose& pose, const TransformNotes& notes) {
+void write_transform(const std::filesystem::path& path, const Pose& pose, const TransformNotes& notes,
+                     const Bend& bend) {
   std::string text = "# p' = matrix * p, in metres\nmatrix:\n";
   for (Eigen::Index row = 0; row < 4; ++row) {
     Eigen::Vector4d values(0.0, 0.0, 0.0, 1.0);
@@ -73,6 +73,14 @@ void write_transform(const std::filesystem::path& path, const Pose& pose, const 
   append_list(text += "rotation_vector: ", rotation_vector_deg(pose));
   append_list(text += "  # degrees\ntranslation: ", pose.translation);
   text += "  # m\n";
+  if (!bend.is_none()) {
+    append_list(text += "bend_centre: ", bend.centre);
+    text += "  # m\nbend:  # 1/m, of x*x, y*y and x*y from there\n";
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      append_list(text += "  - ", bend.shifts.row(row).transpose());
+      text += '\n';
+    }
+  }
   for (const auto& [name, value] : notes)
     text += name + ": " + value + "\n";
   AtomicFile file(path);
@@ -82,7 +90,7 @@ void write_transform(const std::filesystem::path& path, const Pose& pose, const 
 
 Pose parse_transform(std::string_view text, const std::string& name) {
   constexpr double kRigid = 1e-4;
-  const std::vector<double> numbers = numbers_of(matrix_part(text), name);
+  const std::vector<double> numbers = numbers_of(part_of(text, "matrix:", true), kNumbers, name);
   if (numbers.size() < kNumbers)
     throw Error(ErrorCode::file_format,
                 name + ": no transform: a matrix has 16 numbers, here are " + std::to_string(numbers.size()));
@@ -96,10 +104,30 @@ Pose parse_transform(std::string_view text, const std::string& name) {
   return pose;
 }
 
+Bend parse_bend(std::string_view text, const std::string& name) {
+  const std::vector<double> numbers = numbers_of(part_of(text, "bend:", false), kBendNumbers, name),
+                            centre = numbers_of(part_of(text, "bend_centre:", false), 2, name);
+  if (numbers.empty() && centre.empty()) return {};
+  if (numbers.size() < kBendNumbers || centre.size() < 2)
+    throw Error(ErrorCode::file_format, name + ": a bend has a centre of 2 numbers and 3 rows of 3");
+  Bend bend;
+  bend.centre = {centre[0], centre[1]};
+  bend.shifts = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+  if (!bend.centre.allFinite() || !bend.shifts.allFinite())
+    throw Error(ErrorCode::file_format, name + ": the numbers of a bend are finite");
+  return bend;
+}
+
 Pose read_transform(const std::filesystem::path& path) {
   text::TextFile file(path);
   const std::string text = file.read(kLongestFile);
   return parse_transform(text, file.name());
+}
+
+Bend read_bend(const std::filesystem::path& path) {
+  text::TextFile file(path);
+  const std::string text = file.read(kLongestFile);
+  return parse_bend(text, file.name());
 }
 
 }  // namespace ray

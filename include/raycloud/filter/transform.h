@@ -1,6 +1,7 @@
 #pragma once
 /// Moving a whole cloud in space and time.
 
+#include <raycloud/core/bend.h>
 #include <raycloud/core/pose.h>
 #include <raycloud/core/units.h>
 #include <raycloud/exec/context.h>
@@ -16,5 +17,9 @@ namespace ray {
 /// not finite.
 StreamCounts transform_cloud(const Context& context, RaySource& source, RaySink& sink, const Pose& pose,
                              Seconds time_shift = {});
+
+/// As above, without a shift of the times, and then bends: see bend_rays.
+StreamCounts transform_cloud(const Context& context, RaySource& source, RaySink& sink, const Pose& pose,
+                             const Bend& bend);
 
 }  // namespace ray

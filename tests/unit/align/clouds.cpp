@@ -69,6 +69,27 @@ TEST(AlignClouds, LocallyWhereTheyNearlyAre) {
   expect_undone(found.pose, moved, room_scan(1), 0.1 * kDegree, 0.03);
 }
 
+TEST(AlignClouds, OfVeryDifferentDensity) {
+  const RayCloud reference = room_scan(1);
+  RayCloud rays = room_scan(2, 6'000);
+  const Pose moved = moved_by(200.0, {3.0, -2.0, 1.0});
+  rays.transform(moved);
+  const CloudAlignment found = aligned_with(rays, reference);
+  // Right, or not trusted.
+  if (found.doubt.empty()) expect_undone(found.pose, moved, room_scan(1), 0.5 * kDegree, 0.1);
+}
+
+TEST(AlignClouds, TiltedByTenDegrees) {
+  const RayCloud reference = room_scan(1);
+  RayCloud rays = room_scan(2);
+  Pose moved = moved_by(25.0, {1.0, -2.0, 0.5});
+  moved.rotation = rotation_pose({0.14, -0.1, 0.0}).rotation * moved.rotation;
+  rays.transform(moved);
+  const CloudAlignment found = aligned_with(rays, reference);
+  // Right, or not trusted.
+  if (found.doubt.empty()) expect_undone(found.pose, moved, room_scan(1), 0.1 * kDegree, 0.03);
+}
+
 TEST(AlignClouds, DoubtsWhatNothingTells) {
   const RayCloud room = room_scan(1, 30'000);
   // A flat field lies on another anywhere; a room does not lie on a field at all.

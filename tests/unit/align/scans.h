@@ -94,4 +94,42 @@ inline RayCloud field_scan(double hills, std::uint64_t seed, std::size_t rays = 
   return cloud;
 }
 
+/// A street of 500 m along x, another scan for each seed: the ground, and house fronts on both sides at
+/// changing distances, with the side walls that this leaves. Half a centimetre of noise.
+inline RayCloud long_street(std::uint64_t seed, std::size_t rays = 200'000) {
+  constexpr double kHouse = 12.5, kHeight = 6.0, kHalf = 250.0;
+  const RandomStream random(seed, "long street"), houses(1, "houses");
+  const auto front = [&](int house, double side) {
+    return side * (6.0 + 10.0 * houses.uniform(static_cast<std::uint64_t>(house + 100), side > 0.0 ? 1 : 0));
+  };
+  RayCloud cloud;
+  cloud.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const double x = kHalf * (2.0 * random.uniform(i, 0) - 1.0), v = random.uniform(i, 1),
+                 noise = 0.0173 * (random.uniform(i, 2) - 0.5),
+                 side = random.below(2, i, 3) == 0 ? -1.0 : 1.0;
+    const int house = static_cast<int>(std::floor(x / kHouse));
+    double from = x + 8.0 * (random.uniform(i, 6) - 0.5);
+    Eigen::Vector3d& end = cloud.ends[i];
+    switch (random.below(5, i, 4)) {
+      case 0:
+      case 1:
+        end = {x, 6.0 * (2.0 * v - 1.0), noise};
+        break;
+      case 2: {
+        const double a = front(house - 1, side), b = front(house, side), u = random.uniform(i, 5);
+        end = {house * kHouse + noise, a + (b - a) * u, kHeight * v};
+        from = house * kHouse + (std::abs(b) > std::abs(a) ? 4.0 : -4.0) * random.uniform(i, 6);
+        break;
+      }
+      default:
+        end = {x, front(house, side) + noise, kHeight * v};
+    }
+    cloud.starts[i] = {from, 0.0, 1.6};
+    cloud.times[i] = 1e-3 * static_cast<double>(i);
+    cloud.bounded[i] = 1;
+  }
+  return cloud;
+}
+
 }  // namespace ray::test

@@ -27,6 +27,32 @@ RC_GTEST_PROP(TransformFile, ReadsBackToTheLastBit, ()) {
   RC_ASSERT(back.translation == pose.translation);
 }
 
+RC_GTEST_PROP(TransformFile, BendsReadBackToTheLastBit, ()) {
+  Bend bend;
+  for (double& value : bend.shifts.reshaped())
+    value = *rc::gen::inRange(-1'000'000, 1'000'001) * 1e-11;
+  bend.centre = {*rc::gen::inRange(-1'000'000, 1'000'001) * 0.37, 5e6};
+  const test::Scratch scratch;
+  const Pose pose = translation_pose({1.0, 2.0, 3.0});
+  write_transform(scratch.path("t.yaml"), pose, {{"covariance", "\n  - [1, 2]"}}, bend);
+  const Bend back = read_bend(scratch.path("t.yaml"));
+  RC_ASSERT(back.shifts == bend.shifts);
+  RC_ASSERT(bend.is_none() || back.centre == bend.centre);
+  RC_ASSERT(read_transform(scratch.path("t.yaml")).translation == pose.translation);
+}
+
+TEST(TransformFile, RefusesWhatIsNoBend) {
+  EXPECT_TRUE(parse_bend("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "t").is_none());
+  EXPECT_TRUE(parse_bend("matrix: [1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1]\n", "t").is_none());
+  const char* const rows = "bend:\n  - [0, 0, 0]\n  - [1e-5, 0, 0]\n  - [0, 0, 0]\n";
+  EXPECT_EQ(parse_bend(std::string("bend_centre: [1, 2]\n") + rows, "t").shifts(1, 0), 1e-5);
+  for (const std::string& text : {std::string(rows), std::string("bend_centre: [1, 2]\n"),
+                                  "bend_centre: [1, nan]\n" + std::string(rows),
+                                  std::string("bend_centre: [1, 2]\nbend:\n  - [0, 0, 0]\n"),
+                                  std::string("bend_centre: [1, 2]\nbend:\n  - [0, 0, x]\n")})
+    EXPECT_THROW(static_cast<void>(parse_bend(text, "t")), Error) << text;
+}
+
 TEST(TransformFile, TakesSixteenNumbersAlone) {
   const Pose pose = parse_transform("# from elsewhere\n0 -1 0 1.5\n1 0 0 2\n0 0 1 3\n0 0 0 1\n", "t");
   EXPECT_EQ(pose.translation, Eigen::Vector3d(1.5, 2, 3));
