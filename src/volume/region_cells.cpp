@@ -24,8 +24,8 @@ double RegionCells::width_of(std::int64_t level) {
 float RegionCells::semi_axis_within(const Ellipsoid& ellipsoid) {
   constexpr double kRounding = 1.001, kThinnest = 1e-6;
   // The norm of a matrix is no less than its largest eigenvalue.
-  const double norm = Eigen::Matrix3d(ellipsoid.shape.inverse()).norm();
-  return static_cast<float>(kRounding * std::sqrt(norm) + kThinnest);
+  const double most = Eigen::Matrix3d(ellipsoid.shape.inverse()).norm();
+  return static_cast<float>(kRounding * std::sqrt(most) + kThinnest);
 }
 
 RegionCells::Key RegionCells::key_of(const Eigen::Vector3d& centre, float semi_axis) {
