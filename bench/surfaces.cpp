@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   terrain(open);
   split(open, "its ground", kGround);
   bench::run(
-      building.command("raywrap -q " + building.big + " inwards 100 --full -o " + building.file(kHull)));
+      building.command("raywrap -q " + building.big + " inwards 0.4 --full -o " + building.file(kHull)));
   split(building, "its full wrap", kHull);
   for (const char* const words : {"upwards 0.01", "upwards 0.1", "upwards 1", "upwards 10", "downwards 1"})
     sheet(open, words);
