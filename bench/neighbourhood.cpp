@@ -34,7 +34,7 @@ void command(const bench::Paths& paths, const std::string& words, const Bar& bar
   const std::string rest = words.substr(words.find(' '));
   const std::string call = name + " -q " + paths.big + rest + " -o " + paths.file("out.ply");
   const bench::Subject whole = whole_cloud(paths, words, call, bar);
-  // About twenty blocks.
+  // Twenty blocks without what is around them.
   const auto memory = static_cast<long>(bar.per_ray * paths.rays / 10e6);
   const bench::Subject blocks{paths.command(call + " --memory " + std::to_string(memory) + "MB"), ""};
   const bench::Result against = bench::time_against(blocks, whole, 3);

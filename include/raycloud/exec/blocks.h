@@ -3,6 +3,7 @@
 /// works on a block of space and returns a result for each of its records; a cloud that fits the memory is
 /// one block, a larger one is cut into several, which lie in temporary files until it is their turn.
 
+#include <raycloud/exec/block_cuts.h>
 #include <raycloud/exec/end_sample.h>
 #include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/spilled_records.h>
@@ -36,7 +37,6 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
                         const Extract& extract, const Compute& compute, const Apply& apply) {
   // Eigen's vectors are not trivially copyable by the letter; their bytes are all there is to them.
   static_assert(std::is_trivially_destructible_v<Record> && std::is_trivially_destructible_v<Result>);
-  constexpr std::size_t kMostBlocks = 1024;
   const auto extract_chunk = [&](const RayCloud& rays) { return blocks::extract_all<Record>(rays, extract); };
   const std::size_t memory = memory_budget(context);
 
@@ -64,10 +64,8 @@ StreamCounts run_blocks(const Context& context, RaySource& source, RaySink& sink
   if (sample.bounded <= fitting) {
     results = compute(context, std::move(whole), reach);
   } else {
-    // What lies around a block takes room too.
-    const std::size_t parts = 2 * (sample.bounded * needs.bytes_per_record / memory + 1);
-    spilled = std::make_unique<blocks::SpilledRecords<Record>>(
-        SpaceCuts(sample.ends, std::min(parts, kMostBlocks)), reach, memory);
+    spilled = std::make_unique<blocks::SpilledRecords<Record>>(blocks::cuts_for(sample, reach, fitting),
+                                                               reach, memory);
     spilled_results = std::make_unique<SpilledRows<Result>>(spilled->cuts().parts(), memory / 16);
     stream(
         context, source, nullptr,
