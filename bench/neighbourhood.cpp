@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   command(paths, "raycolour normal", {1.0, 90.0});
   command(paths, "raycolour shape", {1.0, 90.0});
   whole_cloud(paths, "raytransients min 10 rays",
-              "raytransients -q min " + paths.big + " 10 rays -o " + paths.file("out.ply"), {0.6, 140.0});
+              "raytransients -q min " + paths.big + " 10 rays -o " + paths.file("out.ply"), {0.6, 130.0});
   bench::run("rm -f " + paths.file("out.ply") + " " + paths.file("out_transient.ply"));
   return 0;
 }

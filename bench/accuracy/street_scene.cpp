@@ -208,10 +208,10 @@ ray::Scene street_scene(std::uint64_t seed, int movers) {
   return ray::with_movers(street.take(), movers, seed);
 }
 
-ray::Scene hedge_scene(double density, double blade) {
-  Street street(1);
+ray::Scene hedge_scene(double density, double blade, std::uint64_t seed) {
+  Street street(seed);
   Shapes shapes;
-  shapes.leaves(kHedgeLow, kHedgeHigh, density, false, {1, "hedge"}, blade);
+  shapes.leaves(kHedgeLow, kHedgeHigh, density, false, {seed, "hedge"}, blade);
   street.add(ray::SceneLabel::hedge, "hedge", shapes.take());
   ray::Scene scene = street.take();
   constexpr int kNodes = 200;

@@ -16,7 +16,7 @@ namespace bench {
 
 /// A hedge alone, of leaves that are triangles of `blade` m, `density` m² of them (one side) in a m³, that
 /// face anywhere. The scanner walks around it once.
-[[nodiscard]] ray::Scene hedge_scene(double density, double blade);
+[[nodiscard]] ray::Scene hedge_scene(double density, double blade, std::uint64_t seed);
 inline const Eigen::Vector3d kHedgeLow(-2.0, -0.75, 0.0);  ///< m
 inline const Eigen::Vector3d kHedgeHigh(2.0, 0.75, 1.5);   ///< m
 
