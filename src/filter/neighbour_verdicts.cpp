@@ -123,11 +123,7 @@ class BlockJudge {
       count += is_seen_from(side, tree_.to_sensor(neighbour.place)) ? 1 : 0;
     }
     if (count < kSurfaceNeighbours && furthest2 <= reach2) return {};
-    const auto end_of = [&](std::size_t i) { return facing.begin() + static_cast<std::ptrdiff_t>(i); };
-    if (count > kSurfaceNeighbours) {
-      std::nth_element(facing.begin(), end_of(kSurfaceNeighbours), end_of(count), nearer_first(tree_));
-      count = kSurfaceNeighbours;
-    }
+    count = keep_nearest(tree_, {facing.data(), count}, kSurfaceNeighbours);
     Asking asking{place, 0, {}};
     for (std::size_t i = 0; i < count; ++i)
       if (facing[i].distance2 <= reach2) asking.all[asking.count++] = facing[i];

@@ -45,7 +45,88 @@ bool are_enough(std::size_t others, std::size_t around) {
   return others >= kFewestOn && others * kPartOn >= around;
 }
 
-/// Whether it is worth trying a line: by single precision, in which four points go at once. Never false where
+/// Most of what is seen along a wire is on it, and there is little beside it.
+template <class Count>
+bool are_of_wire(Count others, Count seen, Count beside) {
+  return 3 * beside <= others && 3 * others >= 2 * seen;
+}
+
+using Floats = std::array<float, kAroundWire>;
+
+/// Points around, in columns; those that are not taken are all at the point itself.
+struct WireColumns {
+  alignas(32) Floats x{}, y{}, z{}, ray_x{}, ray_y{}, ray_z{};  // spacings
+};
+
+/// A line, in spacings: across it to the side and in depth, and what the rays of its two points are there.
+struct WireLine {
+  Eigen::Vector3f along, side, depth;
+  float other_side, other_depth, own_depth;
+};
+
+/// Of what WireTrial::add counts: no fewer that are on the line, no more that are seen along it or beside it.
+struct WireCounts {
+  std::int32_t on = 0, seen = 0, beside = 0;
+};
+
+/// What WireTrial::add asks, of many at once.
+[[gnu::always_inline]] inline WireCounts count_on_line(const WireColumns& points, const WireLine& line) {
+  constexpr auto kRange2 = static_cast<float>(kRangeSigma * kRangeSigma);
+  constexpr auto kAside2 = static_cast<float>(kAsideSigma * kAsideSigma);
+  constexpr auto kMostPart2 = static_cast<float>(kExtrapolated * kExtrapolated);
+  constexpr auto kMost2 = static_cast<float>(kDeviations2);
+  constexpr auto kMostBeside2 = static_cast<float>(kWidthBeside * kWidthBeside * kDeviations2);
+  // What is rounded off is below a thousandth of each of the terms of a square.
+  constexpr float kLess = 0.999F, kMore = 1.001F;
+  const float along_x = line.along.x(), along_y = line.along.y(), along_z = line.along.z();
+  const float side_x = line.side.x(), side_y = line.side.y(), side_z = line.side.z();
+  const float depth_x = line.depth.x(), depth_y = line.depth.y(), depth_z = line.depth.z();
+  const float other_side = line.other_side, other_depth = line.other_depth, own = line.own_depth;
+  Floats on, seen, beside;  // below 0 where it is
+  for (std::size_t i = 0; i < kAroundWire; ++i) {
+    const float x = points.x[i], y = points.y[i], z = points.z[i];
+    const float ray_x = points.ray_x[i], ray_y = points.ray_y[i], ray_z = points.ray_z[i];
+    const float part = along_x * x + along_y * y + along_z * z;
+    const float off = side_x * x + side_y * y + side_z * z;
+    const float off_depth = depth_x * x + depth_y * y + depth_z * z;
+    const float own_side = side_x * ray_x + side_y * ray_y + side_z * ray_z;
+    const float near_depth = depth_x * ray_x + depth_y * ray_y + depth_z * ray_z;
+    const float part2 = part * part, of_own = (1.0F - part) * own;
+    const float to_side = kRange2 * (part2 * other_side * other_side + own_side * own_side) + kAside2;
+    const float in_depth =
+        kRange2 * (of_own * of_own + part2 * other_depth * other_depth + near_depth * near_depth) + kAside2;
+    const float both = kRange2 * (part2 * other_side * other_depth + own_side * near_depth);
+    const float aside2 = off * off, depth2 = off_depth * off_depth;
+    const float square = in_depth * (kLess * aside2 - kMore * kMost2 * to_side) + kLess * to_side * depth2 +
+                         both * (kMost2 * both - 2.0F * off * off_depth);
+    on[i] = std::max(square, kLess * part2 - kMostPart2);
+    const float surely_far = kMore * part2 - kMostPart2;
+    seen[i] = std::max(kMore * aside2 - kMost2 * to_side, surely_far);
+    beside[i] = std::max(std::max(kMost2 * to_side - kLess * aside2, kMore * aside2 - kMostBeside2 * to_side),
+                         std::max(kMore * depth2 - kMost2 * in_depth, surely_far));
+  }
+  WireCounts counts;
+  for (std::size_t i = 0; i < kAroundWire; ++i) {
+    counts.on += on[i] <= 0.0F ? 1 : 0;
+    counts.seen += seen[i] < 0.0F ? 1 : 0;
+    counts.beside += beside[i] < 0.0F ? 1 : 0;
+  }
+  return counts;
+}
+
+WireCounts count_on_plain(const WireColumns& points, const WireLine& line) {
+  return count_on_line(points, line);
+}
+#ifdef __x86_64__
+[[gnu::target("avx2")]] WireCounts count_on_avx2(const WireColumns& points, const WireLine& line) {
+  return count_on_line(points, line);
+}
+const auto count_on_fast = __builtin_cpu_supports("avx2") ? count_on_avx2 : count_on_plain;
+#else
+constexpr auto count_on_fast = count_on_plain;
+#endif
+
+/// Whether it is worth trying a line: by single precision, in which many points go at once. Never false where
 /// a trial would find a wire.
 class WireGuess {
  public:
@@ -53,8 +134,8 @@ class WireGuess {
     for (std::size_t i = 0; i < count_; ++i) {
       const Eigen::Vector3f offset = (scale_ * others[i].offset).cast<float>();
       const Eigen::Vector3f ray = others[i].ray.cast<float>();
-      x_[i] = offset.x(), y_[i] = offset.y(), z_[i] = offset.z();
-      ray_x_[i] = ray.x(), ray_y_[i] = ray.y(), ray_z_[i] = ray.z();
+      points_.x[i] = offset.x(), points_.y[i] = offset.y(), points_.z[i] = offset.z();
+      points_.ray_x[i] = ray.x(), points_.ray_y[i] = ray.y(), points_.ray_z[i] = ray.z();
     }
   }
 
@@ -62,48 +143,24 @@ class WireGuess {
   [[nodiscard]] bool may_be_wire(const NearWire& other, const Eigen::Vector3d& ray) const {
     const Eigen::Vector3d way = other.offset.normalized();
     const Eigen::Vector3d across = way.cross(ray).normalized(), away = across.cross(way);
-    const Eigen::Vector3f along = (way / (scale_ * other.offset.norm())).cast<float>();
-    const Eigen::Vector3f side = across.cast<float>(), depth = away.cast<float>();
-    constexpr auto kRange2 = static_cast<float>(kRangeSigma * kRangeSigma);
-    constexpr auto kAside2 = static_cast<float>(kAsideSigma * kAsideSigma);
-    constexpr auto kMostPart2 = static_cast<float>(1.001 * kExtrapolated * kExtrapolated);
-    constexpr auto kMost2 = static_cast<float>(kDeviations2);
-    // What is rounded off is below a thousandth of each of the terms of a square.
-    constexpr float kLess = 0.999F, kMore = 1.001F * kMost2;
-    const auto other_side = static_cast<float>(across.dot(other.ray));
-    const auto other_depth = static_cast<float>(away.dot(other.ray));
-    const auto own_depth = static_cast<float>(away.dot(ray));
-    Floats excess;  // the same as WireTrial::add asks, but below 0 where it is on the line
-    for (std::size_t i = 0; i < kAroundWire; ++i) {
-      const float part = along.x() * x_[i] + along.y() * y_[i] + along.z() * z_[i];
-      const float off = side.x() * x_[i] + side.y() * y_[i] + side.z() * z_[i];
-      const float off_depth = depth.x() * x_[i] + depth.y() * y_[i] + depth.z() * z_[i];
-      const float own_side = side.x() * ray_x_[i] + side.y() * ray_y_[i] + side.z() * ray_z_[i];
-      const float near_depth = depth.x() * ray_x_[i] + depth.y() * ray_y_[i] + depth.z() * ray_z_[i];
-      const float part2 = part * part, of_own = (1.0F - part) * own_depth;
-      const float to_side = kRange2 * (part2 * other_side * other_side + own_side * own_side) + kAside2;
-      const float in_depth =
-          kRange2 * (of_own * of_own + part2 * other_depth * other_depth + near_depth * near_depth) + kAside2;
-      const float both = kRange2 * (part2 * other_side * other_depth + own_side * near_depth);
-      const float square = in_depth * (kLess * off * off - kMore * to_side) +
-                           kLess * to_side * off_depth * off_depth +
-                           both * (kMost2 * both - 2.0F * off * off_depth);
-      const float too_far = part2 - kMostPart2;
-      excess[i] = square < too_far ? too_far : square;
-    }
-    std::int32_t on = 0;
-    for (std::size_t i = 0; i < kAroundWire; ++i)
-      on += excess[i] <= 0.0F ? 1 : 0;
-    // The places that are not taken are all at the point itself, which is on the line.
+    const WireCounts counts =
+        count_on_fast(points_, {.along = (way / (scale_ * other.offset.norm())).cast<float>(),
+                                .side = across.cast<float>(),
+                                .depth = away.cast<float>(),
+                                .other_side = static_cast<float>(across.dot(other.ray)),
+                                .other_depth = static_cast<float>(away.dot(other.ray)),
+                                .own_depth = static_cast<float>(away.dot(ray))});
+    // The places that are not taken are on the line, and so is the point that gives its direction.
     const auto none = static_cast<std::int32_t>(kAroundWire - count_);
-    return on > none && are_enough(static_cast<std::size_t>(on - none - 1), count_);
+    const std::int32_t others = counts.on - none - 1, seen = counts.seen - none - 1;
+    return others > 0 && are_enough(static_cast<std::size_t>(others), count_) &&
+           are_of_wire(others, seen, counts.beside);
   }
 
  private:
-  using Floats = std::array<float, kAroundWire>;
   std::size_t count_;
   double scale_;
-  alignas(16) Floats x_{}, y_{}, z_{}, ray_x_{}, ray_y_{}, ray_z_{};  // spacings
+  WireColumns points_;
 };
 
 /// One line through the point in question, and what lies on it.
@@ -149,11 +206,8 @@ class WireTrial {
 
   /// Of so many points around.
   [[nodiscard]] bool is_wire(std::size_t around) const {
-    constexpr std::size_t kBeside = 3;
-    constexpr double kMostly = 2.0 / 3.0;
     const std::size_t others = on_ - 1;  // without the one that the line goes through anyway
-    return are_enough(others, around) && kBeside * beside_ <= others &&
-           static_cast<double>(others) >= kMostly * static_cast<double>(seen_) && is_on_it();
+    return are_enough(others, around) && are_of_wire(others, seen_, beside_) && is_on_it();
   }
 
  private:

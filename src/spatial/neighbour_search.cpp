@@ -4,6 +4,7 @@
 #include <raycloud/spatial/neighbour_search.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -15,32 +16,20 @@ class NeighbourSearch::Impl {
  public:
   explicit Impl(const PointTree& tree) : walk_(tree), around_(tree) {}
 
-  std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach,
-                                     const Eigen::Vector3d* side) {
-    assert(count <= kMost && place < walk_.tree().size());
-    if (count == 0) return {};
-    const bool is_new = go_to(place);
-    most_asked_ = std::max(most_asked_, count);
-    // Who says how far it is, to about what was found last, knows.
-    if (is_new && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
-    std::optional<std::span<const Neighbour>> found;
-    double within2 = reach * reach;
-    if (around_.has(place)) {
-      found = around_.nearest(place, count, reach, side);
-      if (!found) {
-        within2 = std::min(within2, around_.bound2());
-        if (widen(std::sqrt(within2))) found = around_.nearest(place, count, reach, side);
-      }
-    }
-    if (!found) {
-      found = walk_.nearest(place, count, within2, side);
-      if (!around_.has(place) && found->size() == count) {
-        const double furthest_found = furthest(*found);
-        if (!gather(kWide * furthest_found * further_asked(count))) gather(kLessWide * furthest_found);
-      }
-    }
-    last_ = *found;
-    return last_;
+  /// Who asks for the nearest and then for more of them, at most points, gets the first from the second.
+  std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach) {
+    const bool again = more_.count > 0 && place == more_.place && reach == more_.reach;
+    if (!again) more_.begin(place, count, reach);
+    if (count > more_.first) more_.usual = count, more_.is_asked = true;
+    if (again && count <= more_.count) return of_more(count);
+    more_.count = more_.is_usual() ? std::max(count, more_.usual) : count;
+    more_.found = search(place, more_.count, reach, nullptr);
+    return of_more(count);
+  }
+  std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
+                                            const Eigen::Vector3d& side) {
+    more_.count = 0;
+    return search(place, count, reach, &side);
   }
 
   Leaf leaf_of(std::size_t place) {
@@ -55,6 +44,76 @@ class NeighbourSearch::Impl {
   }
 
  private:
+  std::span<const Neighbour> search(std::size_t place, std::size_t count, double reach,
+                                    const Eigen::Vector3d* side) {
+    assert(count <= kMost && place < walk_.tree().size());
+    if (count == 0) return {};
+    const bool is_new = go_to(place);
+    most_asked_ = std::max(most_asked_, count);
+    // Who says how far it is, to about what was found last, knows.
+    if (is_new && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
+    const bool is_guess = is_new && !around_.has(place) && furthest_before_.count > 0 &&
+                          gather(kWide * furthest_before_.mean());
+    std::optional<std::span<const Neighbour>> found;
+    double within2 = reach * reach;
+    if (around_.has(place)) {
+      found = around_.nearest(place, count, reach, side);
+      if (!found) {
+        within2 = std::min(within2, around_.bound2());
+        if (widen(std::sqrt(within2))) found = around_.nearest(place, count, reach, side);
+      }
+    }
+    if (!found) {
+      found = walk_.nearest(place, count, within2, side);
+      if ((is_guess || !around_.has(place)) && found->size() == count) {
+        const double furthest_found = furthest(*found);
+        if (!gather(kWide * furthest_found * further_asked(count))) gather(kLessWide * furthest_found);
+      }
+    }
+    last_ = *found;
+    if (last_.size() == count) furthest_.add(count, furthest(last_));
+    return last_;
+  }
+
+  /// What was found last, and whether those who ask for the nearest are wont to ask for more of them then.
+  struct More {
+    std::size_t place = 0, first = 0;  // asked for
+    double reach = 0.0;
+    std::size_t count = 0;  // found, unless there are less; 0: forgotten
+    std::span<const Neighbour> found;
+    bool is_asked = false;
+    std::size_t usual = 0;
+    int often = 0;
+
+    void begin(std::size_t new_place, std::size_t new_first, double new_reach) {
+      constexpr int kLongest = 8;
+      often = std::clamp(often + (is_asked ? 1 : -1), 0, kLongest);
+      place = new_place, first = new_first, reach = new_reach;
+      is_asked = false;
+    }
+    [[nodiscard]] bool is_usual() const {
+      constexpr int kOften = 6;
+      return often >= kOften;
+    }
+  };
+  std::span<const Neighbour> of_more(std::size_t count) {
+    if (count >= more_.found.size()) return more_.found;
+    std::copy(more_.found.begin(), more_.found.end(), nearest_.begin());
+    return {nearest_.data(), keep_nearest(walk_.tree(), {nearest_.data(), more_.found.size()}, count)};
+  }
+
+  /// How far the most that were asked for are, in a leaf.
+  struct Furthest {
+    std::size_t asked = 0;
+    double sum = 0.0;  // m
+    int count = 0;
+    void add(std::size_t asked_for, double distance) {
+      if (asked_for < asked) return;
+      if (asked_for > asked) *this = {asked_for, 0.0, 0};
+      sum += distance, ++count;
+    }
+    [[nodiscard]] double mean() const { return sum / count; }
+  };
   static double furthest(std::span<const Neighbour> neighbours) {
     double furthest2 = 0.0;
     for (const Neighbour& neighbour : neighbours)
@@ -67,6 +126,7 @@ class NeighbourSearch::Impl {
     around_.forget();
     tries_ = kTries;
     most_asked_before_ = std::exchange(most_asked_, 0);
+    furthest_before_ = std::exchange(furthest_, {});
     return true;
   }
 
@@ -108,18 +168,21 @@ class NeighbourSearch::Impl {
   int tries_ = 0;
   std::size_t most_asked_ = 0, most_asked_before_ = 0;  // of a search, in the leaf and in the one before
   std::span<const Neighbour> last_;                     // valid until the next search
+  Furthest furthest_, furthest_before_;
+  More more_;
+  std::array<Neighbour, kMost> nearest_;
 };
 
 NeighbourSearch::NeighbourSearch(const PointTree& tree) : tree_(tree), impl_(std::make_unique<Impl>(tree)) {}
 NeighbourSearch::~NeighbourSearch() = default;
 
 std::span<const Neighbour> NeighbourSearch::nearest(std::size_t place, std::size_t count, double reach) {
-  return impl_->nearest(place, count, reach, nullptr);
+  return impl_->nearest(place, count, reach);
 }
 
 std::span<const Neighbour> NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
                                                            const Eigen::Vector3d& normal) {
-  return impl_->nearest(place, count, reach, &normal);
+  return impl_->nearest_facing(place, count, reach, normal);
 }
 
 NeighbourSearch::Leaf NeighbourSearch::leaf_of(std::size_t place) {

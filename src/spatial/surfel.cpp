@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace ray {
@@ -126,40 +125,9 @@ class WideNeighbours {
 
   std::span<const Neighbour> nearest_of(std::uint64_t bits) {
     std::size_t count = 0;
-    Doubles distances2 = Doubles::Constant(std::numeric_limits<double>::infinity());
-    for (; bits != 0; bits &= bits - 1) {
-      of_side_[count] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
-      distances2[static_cast<Eigen::Index>(count)] = of_side_[count].distance2;
-      ++count;
-    }
-    if (count <= rule_.neighbours) return {of_side_.data(), count};
-    const double most2 = distance2_of_nearest(distances2, count);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      of_side_[kept] = of_side_[i];
-      kept += of_side_[i].distance2 <= most2 ? 1 : 0;
-    }
-    if (kept > rule_.neighbours) {
-      const auto at = [&](std::size_t i) { return of_side_.begin() + static_cast<std::ptrdiff_t>(i); };
-      std::nth_element(at(0), at(rule_.neighbours), at(kept), nearer_first(search_.tree()));
-    }
-    return {of_side_.data(), rule_.neighbours};
-  }
-
-  /// A squared distance within which there are as many as wanted, and seldom more. As the number of points on
-  /// a surface grows with the squared distance, a guess by proportion is soon right.
-  [[nodiscard]] double distance2_of_nearest(const Doubles& distances2, std::size_t count) const {
-    constexpr int kGuesses = 12;
-    const auto wanted = static_cast<double>(rule_.neighbours);
-    double low = 0.0, high = distances2.head(static_cast<Eigen::Index>(count)).maxCoeff();
-    double low_count = 0.0, high_count = static_cast<double>(count);
-    for (int guess = 0; guess < kGuesses && high_count > wanted; ++guess) {
-      const double at = low + (high - low) * (wanted - low_count + 0.5) / (high_count - low_count + 1.0);
-      const auto within = static_cast<double>((distances2 <= at).count());
-      (within >= wanted ? high : low) = at;
-      (within >= wanted ? high_count : low_count) = within;
-    }
-    return high;
+    for (; bits != 0; bits &= bits - 1)
+      of_side_[count++] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
+    return {of_side_.data(), keep_nearest(search_.tree(), {of_side_.data(), count}, rule_.neighbours)};
   }
 
   struct Known {

@@ -97,6 +97,49 @@ RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForce, ()) {
   RC_ASSERT(std::count(seen.begin(), seen.end(), 1) == static_cast<std::ptrdiff_t>(count));
 }
 
+/// Whatever was asked for before, of the same place or of others.
+RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForceInAnyOrderOfAsking, ()) {
+  const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
+  const std::vector<SeenPoint> points = arranged(arrangement, 300, *rc::gen::arbitrary<std::uint64_t>());
+  const RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), "asking");
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  const auto most = static_cast<double>(*rc::gen::inRange(0, 10));
+  const Eigen::Vector3d side(-0.2, 0.4, 0.9);
+  for (std::size_t place = 0; place < tree.size(); ++place) {
+    const auto expect = [&](std::size_t count, double reach) {
+      const auto any = [](std::size_t) { return true; };
+      RC_ASSERT(sorted(tree, search.nearest(place, count, reach)) ==
+                brute_force(points, tree.index(place), count, reach, any));
+    };
+    expect(16, 0.3);
+    if (random.uniform(place, 0) < 0.1) search.nearest_facing(place, 16, 0.3, side);
+    // Mostly there is more to be asked, so that it will be expected.
+    if (10.0 * random.uniform(place, 1) < most) expect(48, 0.3);
+    if (random.uniform(place, 2) < 0.1) expect(20, 0.4);
+    if (random.uniform(place, 3) < 0.1) expect(60, 0.3);
+    if (random.uniform(place, 4) < 0.1) expect(3, 0.3);
+  }
+}
+
+TEST(PointTree, KeepsTheNearestOfNeighbours) {
+  const std::vector<SeenPoint> points = arranged(Arrangement::grid, 2000, 3);
+  const PointTree tree({}, points);
+  const RandomStream random(5, "some of the points");
+  for (std::size_t trial = 0; trial < 200; ++trial) {
+    std::vector<Neighbour> neighbours(trial % 65);
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+      const auto place = static_cast<std::uint32_t>(random.uniform(trial, i) * 2000.0);
+      neighbours[i] = {(tree.point(place) - tree.point(0)).squaredNorm(), place};
+    }
+    Found expected = sorted(tree, neighbours);
+    const std::size_t most = trial % 23;
+    expected.resize(std::min(expected.size(), most));
+    const std::size_t kept = keep_nearest(tree, neighbours, most);
+    EXPECT_EQ(sorted(tree, std::span(neighbours).first(kept)), expected);
+  }
+}
+
 /// Large enough for several buckets; queries in any order.
 TEST(PointTree, NeighboursOfManyPointsAreThoseOfBruteForce) {
   for (const Arrangement arrangement : kArrangements) {
