@@ -17,7 +17,9 @@ namespace {
 using namespace align;
 
 Known known_of(const Context& context, RaySource& source, const Survey& survey, double width) {
-  return {context, gather_surfaces(context, source, survey, width)};
+  Known known(context, gather_surfaces(context, source, survey, width));
+  known.surfaces.gathered = {};  // patches tell what is in them
+  return known;
 }
 
 void require_surfaces(const Survey& survey, const char* which) {
