@@ -1,6 +1,7 @@
 // Pairs of scans of one world, cut so that they share a part: how many are aligned, how truly, and how many
 // wrongly.
 
+#include "peer_pair.h"
 #include "street_scene.h"
 #include "tables.h"
 
@@ -154,13 +155,18 @@ void tell(const ray::CloudAlignment& found, const PoseError& error, const char* 
                found.agreement, found.rmse, found.doubt.c_str());
 }
 
-void judge(const CloudPair& pair, Tally& tally) {
+/// RAYCLOUD_BENCH_PEER_PAIRS names a folder where pairs are left for other programs, each by its name.
+void judge(const CloudPair& pair, const std::string& name, Tally& tally) {
   constexpr double kCoarseTurn = 0.5 * kDegree, kCoarseShift = 0.2, kFineTurn = 0.05 * kDegree,
                    kFineShift = 0.02;
   ray::MemorySource cloud(pair.cloud), reference(pair.reference);
   const auto begin = std::chrono::steady_clock::now();
   const ray::CloudAlignment found = align_clouds({}, cloud, reference);
-  tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  tally.seconds += seconds;
+  if (const char* folder = std::getenv("RAYCLOUD_BENCH_PEER_PAIRS"))
+    write_peer_pair(std::string(folder) + "/" + name,
+                    {pair.cloud, pair.reference, pair.truth, found, seconds});
   const PoseError error = error_of(found.pose, pair);
   const bool is_coarse = error.turn < kCoarseTurn && error.shift < kCoarseShift;
   const bool is_fine = error.turn < kFineTurn && error.shift < kFineShift;
@@ -211,7 +217,7 @@ void pair_rows(const World& world, int pairs) {
     for (int i = 0; i < pairs; ++i)
       judge(cut_pair(scans[static_cast<std::size_t>(i % kScansOfWorld)], overlap, world.tilt, random,
                      static_cast<std::uint64_t>(i)),
-            tally);
+            row_name(world, overlap) + ":" + std::to_string(i), tally);
     const auto percent = [&](int part) { return 100.0 * part / tally.pairs; };
     const bool met = tally.wrong == 0 && (world.is_hard || overlap < 0.3 ||
                                           percent(tally.fine) >= (overlap >= 0.5 ? 99.0 : 90.0));

@@ -3,10 +3,11 @@
 // Reads what write_peer_points wrote and writes the result as it lies in memory, so that reading and writing
 // take PCL no longer than they must.
 
+#include "peer_pcl_points.h"
+
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/filters/radius_outlier_removal.h>
 #include <pcl/filters/statistical_outlier_removal.h>
-#include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/mls.h>
 
@@ -15,28 +16,10 @@
 #include <fstream>
 #include <string>
 #include <thread>
-#include <vector>
 
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
-
-Cloud::Ptr read_points(const char* name) {
-  std::ifstream file(name, std::ios::binary);
-  std::size_t count = 0;
-  for (std::string line; std::getline(file, line) && line != "end_header";)
-    if (line.rfind("element vertex ", 0) == 0) count = std::stoull(line.substr(15));
-  std::vector<float> values(3 * count);
-  file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(4 * values.size()));
-  if (!file || count == 0) {
-    std::fprintf(stderr, "%s: no points\n", name);
-    std::exit(1);
-  }
-  const Cloud::Ptr cloud(new Cloud);
-  for (std::size_t i = 0; i < values.size(); i += 3)
-    cloud->push_back({values[i], values[i + 1], values[i + 2]});
-  return cloud;
-}
+using Cloud = bench::PclCloud;
 
 template <class Points>
 void write(const Points& points, const char* name) {
@@ -100,7 +83,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: peer_pcl normals|outliers|radius|smooth POINTS.ply OUT.bin [RADIUS]\n");
     return 2;
   }
-  const Cloud::Ptr cloud = read_points(argv[2]);
+  const Cloud::Ptr cloud = bench::read_pcl_points(argv[2]);
   if (operation == "normals") normals(cloud, argv[3]);
   if (operation == "outliers") outliers(cloud, argv[3]);
   if (operation == "radius") radius_outliers(cloud, argv[3], std::atof(argv[4]));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -31,15 +32,22 @@ BendEquation both_of(BendEquation a, const BendEquation& b) {
   return a;
 }
 
-/// How far a patch is from its counterpart, along a direction: the normal of a flat one.
+/// How far a patch is from its counterpart, along two directions that should be one: the normals of flat
+/// ones, each of which has its own noise (see fine.cpp).
 struct Miss {
-  double off = 0.0;  ///< m
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  std::array<Eigen::Vector3d, 2> directions;
+  std::array<double, 2> off;  ///< m
+
+  [[nodiscard]] double mean() const { return 0.5 * (off[0] + off[1]); }
 };
+
+Miss miss_along(const Eigen::Vector3d& first, const Eigen::Vector3d& second, const Eigen::Vector3d& apart) {
+  return {{first, second}, {first.dot(apart), second.dot(apart)}};
+}
 
 /// One of a flat patch, two of a thin one, none without a counterpart.
 struct Misses {
-  std::array<Miss, 2> all;
+  std::array<Miss, 2> all{};
   std::size_t count = 0;
   [[nodiscard]] auto begin() const { return all.begin(); }
   [[nodiscard]] auto end() const { return all.begin() + static_cast<std::ptrdiff_t>(count); }
@@ -50,9 +58,9 @@ Misses misses_of(const Patch& patch, const Eigen::Vector3d& place, const Eigen::
   const Patch* other = counterpart_of(patch, reference, place, rotation);
   if (other == nullptr) return {};
   const Eigen::Vector3d apart = other->mean - place;
-  if (patch.is_flat()) return {{Miss{other->normal.dot(apart), other->normal}, Miss{}}, 1};
+  if (patch.is_flat()) return {{miss_along(other->normal, rotation * patch.normal, apart)}, 1};
   const Eigen::Vector3d first = other->along.unitOrthogonal(), second = other->along.cross(first);
-  return {{Miss{first.dot(apart), first}, Miss{second.dot(apart), second}}, 2};
+  return {{miss_along(first, first, apart), miss_along(second, second, apart)}, 2};
 }
 
 struct BendState {
@@ -60,26 +68,49 @@ struct BendState {
   Bend bend;
   Eigen::Vector3d centre;  ///< m, about which turns are
   double reach;            ///< m, horizontal, root mean square from the centre
+  /// To the place along and across the cloud, each over its root mean square: so that what bends a long map
+  /// across counts as much in a step as what bends it along.
+  Eigen::Matrix2d to_axes;
+
+  [[nodiscard]] Eigen::Vector3d quadratic(const Eigen::Vector3d& straight) const {
+    const Eigen::Vector2d from = to_axes * (straight.head<2>() - bend.centre);
+    return {from.x() * from.x(), from.y() * from.y(), from.x() * from.y()};
+  }
 };
+
+/// From (x², y², x y) to those along and across.
+Eigen::Matrix3d quadratics_to_axes(const Eigen::Matrix2d& to_axes) {
+  const auto product = [&](Eigen::Index i, Eigen::Index j) {
+    const Eigen::Vector2d a = to_axes.row(i), b = to_axes.row(j);
+    return Eigen::RowVector3d(a.x() * b.x(), a.y() * b.y(), a.x() * b.y() + a.y() * b.x());
+  };
+  Eigen::Matrix3d matrix;
+  matrix << product(0, 0), product(1, 1), product(0, 1);
+  return matrix;
+}
 
 BendEquation bend_equation(std::span<const Patch> patches, const PatchLevel& reference, const BendState& at,
                            double gate) {
   BendEquation equation;
   for (const Patch& patch : patches) {
     const Eigen::Vector3d straight = at.pose * patch.mean, place = at.bend * straight;
-    const Eigen::Vector2d from = (straight.head<2>() - at.bend.centre) / at.reach;
-    const Eigen::Vector3d quadratic(from.x() * from.x(), from.y() * from.y(), from.x() * from.y());
-    const Eigen::Vector3d arm = (place - at.centre) / at.reach;
+    const Eigen::Vector3d quadratic = at.quadratic(straight), arm = (place - at.centre) / at.reach;
     bool counts = false;
     for (const Miss& miss : misses_of(patch, place, at.pose.rotation, reference)) {
-      const double u = miss.off / gate, weight = std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
+      const double u = miss.mean() / gate, weight = std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
       if (!(weight > 0.0)) continue;
-      Vector15 row;
-      row << arm.cross(miss.direction), miss.direction, quadratic[0] * miss.direction,
-          quadratic[1] * miss.direction, quadratic[2] * miss.direction;
-      equation.information.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-      equation.pull += weight * miss.off * row;
-      equation.squares += weight * miss.off * miss.off;
+      const auto row_of = [&](const Eigen::Vector3d& direction) {
+        Vector15 row;
+        row << arm.cross(direction), direction, quadratic[0] * direction, quadratic[1] * direction,
+            quadratic[2] * direction;
+        return row;
+      };
+      const Vector15 first = row_of(miss.directions[0]), second = row_of(miss.directions[1]);
+      equation.information.selfadjointView<Eigen::Lower>()
+          .rankUpdate((0.5 * (first + second)).eval(), weight)
+          .rankUpdate((0.5 * (first - second)).eval(), -weight);
+      equation.pull += 0.5 * weight * (miss.off[0] * second + miss.off[1] * first);
+      equation.squares += weight * miss.mean() * miss.mean();
       equation.weights += weight;
       counts = true;
     }
@@ -103,23 +134,38 @@ void move_by(const Vector15& change, BendState& at) {
   const Eigen::Matrix3d rotation = rotation_pose(change.head<3>() / at.reach).rotation;
   at.pose.translation = rotation * (at.pose.translation - at.centre) + at.centre + change.segment<3>(3);
   at.pose.rotation = rotation * at.pose.rotation;
-  for (Eigen::Index i = 0; i < 3; ++i)
-    at.bend.shifts.col(i) += change.segment<3>(6 + 3 * i) / (at.reach * at.reach);
+  at.bend.shifts += change.tail<9>().reshaped(3, 3) * quadratics_to_axes(at.to_axes);
 }
 
-BendEquation fit_level(const Context& context, std::span<const Patch> patches, const PatchLevel& reference,
-                       double gate, BendState& at) {
+/// Patches to be fitted to others, of about the same width.
+struct LevelPair {
+  const PatchLevel& from;
+  const PatchLevel& to;
+  double gate;  ///< m
+};
+
+BendEquation sum_of_levels(const Context& context, std::span<const LevelPair> levels, const BendState& at) {
+  constexpr std::size_t kGrain = 512;
+  BendEquation sum;
+  for (const LevelPair& level : levels) {
+    const std::span<const Patch> patches = level.from.patches();
+    sum = both_of(sum, parallel_reduce(
+                           context, patches.size(), kGrain, BendEquation(),
+                           [&](std::size_t begin, std::size_t end) {
+                             return bend_equation(patches.subspan(begin, end - begin), level.to, at,
+                                                  level.gate);
+                           },
+                           both_of));
+  }
+  return sum;
+}
+
+BendEquation fit_levels(const Context& context, std::span<const LevelPair> levels, BendState& at) {
   constexpr int kSteps = 30;
   constexpr double kEnough = 1e-5;  // m, at the reach
-  constexpr std::size_t kGrain = 512;
   BendEquation equation;
   for (int step = 0; step < kSteps; ++step) {
-    equation = parallel_reduce(
-        context, patches.size(), kGrain, BendEquation(),
-        [&](std::size_t begin, std::size_t end) {
-          return bend_equation(patches.subspan(begin, end - begin), reference, at, gate);
-        },
-        both_of);
+    equation = sum_of_levels(context, levels, at);
     const Vector15 change = bend_step(equation);
     if (!change.allFinite()) break;
     move_by(change, at);
@@ -148,7 +194,7 @@ Misfit misfit_of(const Context& context, const PatchLevel& cloud, const PatchLev
         double sum = 0.0;
         const Misses misses = misses_of(patches[i], place, states[k].pose.rotation, reference);
         for (const Miss& miss : misses)
-          sum += miss.off * miss.off;
+          sum += miss.mean() * miss.mean();
         squares[i][k] = misses.count == 0 ? gate * gate : std::min(sum, gate * gate);
       }
   });
@@ -178,14 +224,21 @@ Misfit misfit_of(const Context& context, const PatchLevel& cloud, const PatchLev
 }
 
 BendState start_of(const Known& cloud, const Pose& rigid) {
-  BendState at{rigid, {}, Eigen::Vector3d::Zero(), 0.0};
+  constexpr double kLeastReach = 1e-3;  // m
+  BendState at{rigid, {}, Eigen::Vector3d::Zero(), 0.0, Eigen::Matrix2d::Identity()};
   const std::vector<Patch>& patches = cloud.fine.patches();
   const auto count = static_cast<double>(patches.size());
   for (const Patch& patch : patches)
     at.centre += rigid * patch.mean / count;
-  for (const Patch& patch : patches)
-    at.reach += (rigid * patch.mean - at.centre).head<2>().squaredNorm() / count;
-  at.reach = std::max(std::sqrt(at.reach), 1e-3);
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Patch& patch : patches) {
+    const Eigen::Vector2d from = (rigid * patch.mean - at.centre).head<2>();
+    spread += from * from.transpose() / count;
+  }
+  at.reach = std::max(std::sqrt(spread.trace()), kLeastReach);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
+  const Eigen::Vector2d reaches = axes.eigenvalues().cwiseMax(kLeastReach * kLeastReach).cwiseSqrt();
+  at.to_axes = reaches.cwiseInverse().asDiagonal() * axes.eigenvectors().transpose();
   at.bend.centre = at.centre.head<2>();
   return at;
 }
@@ -197,13 +250,19 @@ BendFit fit_bend(const Context& context, const Known& cloud, const Known& refere
   constexpr double kLeast = 100.0;                 // patches
   const BendState before = start_of(cloud, rigid);
   BendState at = before;
-  const auto fit_to = [&](const PatchLevel& from, const PatchLevel& to, double gate) {
-    return fit_level(context, from.patches(), to, gate * to.width(), at);
+  const auto pair = [](const PatchLevel& from, const PatchLevel& to, double gate) {
+    return LevelPair{from, to, gate * to.width()};
   };
-  fit_to(cloud.wide, reference.wide, kWideGate);
-  fit_to(cloud.middle, reference.middle, kWideGate);
-  fit_to(cloud.fine, reference.fine, kWideGate);
-  const BendEquation last = fit_to(cloud.fine, reference.fine, kGate);
+  const auto fit_to = [&](std::initializer_list<LevelPair> levels) {
+    return fit_levels(context, std::span(levels.begin(), levels.size()), at);
+  };
+  fit_to({pair(cloud.wide, reference.wide, kWideGate)});
+  fit_to({pair(cloud.middle, reference.middle, kWideGate)});
+  fit_to({pair(cloud.fine, reference.fine, kWideGate)});
+  fit_to({pair(cloud.fine, reference.fine, kGate)});
+  // Narrow ones follow a bend best; where they have few points, wider ones are truer.
+  const BendEquation last =
+      fit_to({pair(cloud.fine, reference.fine, kGate), pair(cloud.narrow, reference.narrow, kGate)});
   BendFit fit{at.pose, at.bend, 0.0, 0.0, last.count, 0.0};
   if (last.count < kLeast || !(last.weights > 0.0)) return fit;
   fit.rmse = std::sqrt(last.squares / last.weights);

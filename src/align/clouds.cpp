@@ -17,7 +17,9 @@ namespace {
 using namespace align;
 
 Known known_of(const Context& context, RaySource& source, const Survey& survey, double width) {
-  return {context, gather_surfaces(context, source, survey, width)};
+  Known known(context, gather_surfaces(context, source, survey, width));
+  known.surfaces.gathered = {};  // patches tell what is in them
+  return known;
 }
 
 void require_surfaces(const Survey& survey, const char* which) {
@@ -62,6 +64,22 @@ FineFit last_fit(const Context& context, const Known& cloud, const Known& refere
   const FineFit narrow = fit_patches(context, cloud.narrow.patches(), reference.narrow, fit.pose,
                                      {kGate * reference.narrow.width(), 20});
   return narrow.count < kShare * fit.count ? fit : narrow;
+}
+
+/// Of few patches each counts, and what is wrong with it: of a sparse scan of rings a wide one is seldom a
+/// plane. Ones half as wide take their place where as many find another.
+FineFit narrower_fit(const Context& context, RaySource& cloud_source, RaySource& reference_source,
+                     const Known& cloud, const Known& reference, const FineFit& fit) {
+  constexpr double kFew = 2000.0, kGate = 0.25, kLeastPoints = 5.0;
+  if (fit.count >= kFew) return fit;
+  const auto level_of = [&](RaySource& source, const Known& known) {
+    return PatchLevel(context,
+                      gather_surfaces(context, source, known.surfaces.survey, 0.5 * known.surfaces.width), 1,
+                      kLeastPoints);
+  };
+  const PatchLevel from = level_of(cloud_source, cloud), onto = level_of(reference_source, reference);
+  const FineFit narrower = fit_patches(context, from.patches(), onto, fit.pose, {kGate * onto.width(), 20});
+  return narrower.count < fit.count ? fit : narrower;
 }
 
 /// Hypotheses, the best first, and after them those that were looked for beside the best.
@@ -135,23 +153,26 @@ Doubt doubt_of(const Judged& judged, const Known& cloud, const Jury& jury, doubl
 /// An alignment, and its pose from the origin of one cloud to that of the other.
 struct Placed {
   CloudAlignment alignment;
-  Pose pose;
+  FineFit fit;
   bool is_elsewhere = false;
 };
 
-Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
-  const Jury jury(cloud, reference);
-  const Judged judged = judge(context, cloud, reference, jury, local);
-  const Hypothesis& best = judged.all.front();
-  const FineFit fit = last_fit(context, cloud, reference, best.pose);
-  Placed placed;
-  placed.pose = fit.pose;
-  CloudAlignment& alignment = placed.alignment;
+void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, CloudAlignment& alignment) {
   alignment.pose = in_world(fit.pose, cloud, reference);
   alignment.rmse = fit.rmse;
   alignment.patches = fit.count;
   alignment.covariance = covariance_of(fit);
   alignment.centre = fit.centre + reference.surfaces.survey.origin;
+}
+
+Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
+  const Jury jury(cloud, reference);
+  const Judged judged = judge(context, cloud, reference, jury, local);
+  const Hypothesis& best = judged.all.front();
+  Placed placed;
+  placed.fit = last_fit(context, cloud, reference, best.pose);
+  CloudAlignment& alignment = placed.alignment;
+  tell_fit(placed.fit, cloud, reference, alignment);
   const Agreement::Counts there = best.there.all(), back = best.back.all();
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
@@ -191,11 +212,13 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   const double width = std::max(patch_width(of_cloud), patch_width(of_reference));
   const Known cloud = known_of(context, cloud_source, of_cloud, width),
               reference = known_of(context, reference_source, of_reference, width);
-  const Placed placed = place(context, cloud, reference, rule.local);
+  Placed placed = place(context, cloud, reference, rule.local);
+  placed.fit = narrower_fit(context, cloud_source, reference_source, cloud, reference, placed.fit);
+  tell_fit(placed.fit, cloud, reference, placed.alignment);
   CloudAlignment alignment = placed.alignment;
   // Where another place is as good, a bend does not tell which.
   if (rule.nonrigid && !placed.is_elsewhere) {
-    const BendFit fit = fit_bend(context, cloud, reference, placed.pose);
+    const BendFit fit = fit_bend(context, cloud, reference, placed.fit.pose);
     alignment.bend_gain = fit.gain;
     if (fit.is_better()) alignment = judge_bent(context, fit, cloud_source, cloud, reference);
   }

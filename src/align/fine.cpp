@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,31 +26,38 @@ Equation sum_of(Equation a, const Equation& b) {
   return a;
 }
 
-/// That the distance `off` (m) along `direction` is to vanish, for small turns about the centre and shifts.
-void pull_along(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
-                Equation& equation) {
+Vector6 row_of(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction) {
   Vector6 row;
   row << arm.cross(direction), direction;
-  equation.information.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-  equation.pull += weight * off * row;
+  return row;
 }
 
-void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
-         Equation& equation) {
-  pull_along(arm, direction, off, weight, equation);
+void add_residual(double off, double weight, Equation& equation) {
   equation.squares += weight * off * off;
   equation.weights += weight;
 }
 
-/// Noise tilts normals, so that of thousands of patches of a plane each seems to tell a little of shifts
-/// within it, and all together pull somewhere. Takes away what normals of that variance are expected to add
-/// (corrected least squares, Fuller 1987).
-void correct_for_tilt(const Patch& patch, const Eigen::Vector3d& arm, const Eigen::Vector3d& apart,
-                      double weight, Equation& equation) {
-  const double noise = weight * patch.variances[0] / patch.count;
-  const Eigen::Vector3d across = patch.normal.cross(patch.along);
-  pull_along(arm, across, across.dot(apart), -noise / patch.variances[1], equation);
-  pull_along(arm, patch.along, patch.along.dot(apart), -noise / patch.variances[2], equation);
+/// That the distance `off` (m) along `direction` is to vanish, for small turns about the centre and shifts.
+void pull_along(const Eigen::Vector3d& arm, const Eigen::Vector3d& direction, double off, double weight,
+                Equation& equation) {
+  const Vector6 row = row_of(arm, direction);
+  equation.information.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+  equation.pull += weight * off * row;
+  add_residual(off, weight, equation);
+}
+
+/// That two planes are to be one. Noise tilts normals, so that of thousands of patches of a plane each seems
+/// to tell a little of shifts within it: all together pull means onto means, as cubes happen to lie. The
+/// noise of one cloud is none of the other's: so the distance along one normal pulls along the other
+/// (instrumental variables, Fuller 1987), and what tilts tell is zero on average.
+void pull_together(const Eigen::Vector3d& arm, const std::array<Eigen::Vector3d, 2>& normals,
+                   const std::array<double, 2>& off, double weight, Equation& equation) {
+  const Vector6 first = row_of(arm, normals[0]), second = row_of(arm, normals[1]);
+  const Vector6 mean = 0.5 * (first + second), half = 0.5 * (first - second);
+  // The symmetric part of first · secondᵀ.
+  equation.information.selfadjointView<Eigen::Lower>().rankUpdate(mean, weight).rankUpdate(half, -weight);
+  equation.pull += 0.5 * weight * (off[0] * second + off[1] * first);
+  add_residual(0.5 * (off[0] + off[1]), weight, equation);
 }
 
 Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference, const FineFit& at,
@@ -70,11 +78,12 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
     };
     const auto variance_of_mean = [](const Patch& one, int i) { return one.variances[i] / one.count; };
     if (patch.is_flat()) {
-      const double off = other->normal.dot(apart);
-      const double weight = weight_of(off, variance_of_mean(patch, 0) + variance_of_mean(*other, 0));
+      const std::array<Eigen::Vector3d, 2> normals{other->normal, rotation * patch.normal};
+      const std::array<double, 2> off{normals[0].dot(apart), normals[1].dot(apart)};
+      const double weight =
+          weight_of(0.5 * (off[0] + off[1]), variance_of_mean(patch, 0) + variance_of_mean(*other, 0));
       if (!(weight > 0.0)) continue;
-      add(arm, other->normal, off, weight, equation);
-      correct_for_tilt(*other, arm, apart, weight, equation);
+      pull_together(arm, normals, off, weight, equation);
       equation.count += 1.0;
     } else {
       const Eigen::Vector3d across = apart - other->along * other->along.dot(apart);
@@ -82,8 +91,8 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
       const double weight = weight_of(off, variance_of_mean(patch, 1) + variance_of_mean(*other, 1));
       if (!(weight > 0.0)) continue;
       const Eigen::Vector3d first = other->along.unitOrthogonal(), second = other->along.cross(first);
-      add(arm, first, first.dot(apart), 0.5 * weight, equation);
-      add(arm, second, second.dot(apart), 0.5 * weight, equation);
+      pull_along(arm, first, first.dot(apart), 0.5 * weight, equation);
+      pull_along(arm, second, second.dot(apart), 0.5 * weight, equation);
       equation.count += 1.0;
     }
   }

@@ -50,6 +50,8 @@ Rays free_parts(const Context& context, const Surfaces& surfaces, const PatchLev
   // Where a cloud was cut, rays begin and end in the middle of a cube, perhaps just before a surface.
   const double clear = kClear * level.width();
   Rays rays;
+  rays.starts.reserve(gathered.size() + surfaces.sky.size());
+  rays.ends.reserve(gathered.size() + surfaces.sky.size());
   const auto add = [&](const Segment& ray, double at_end) {
     const Eigen::Vector3d start = ray.start.cast<double>(), way = ray.end.cast<double>() - start;
     const double length = way.norm(), end = length - at_end, begin = std::max(clear, end - most);
@@ -69,7 +71,7 @@ Rays free_parts(const Context& context, const Surfaces& surfaces, const PatchLev
 FreeCubes::FreeCubes(const Context& context, const Surfaces& surfaces, const PatchLevel& level)
     : width_(level.width()) {
   constexpr std::size_t kGrain = 2048;
-  constexpr std::size_t kMostBricks = std::size_t{1} << 20;  // at once
+  constexpr std::size_t kMostBricks = std::size_t{1} << 16;  // at once
   const Rays rays = free_parts(context, surfaces, level);
   std::mutex mutex;  // bits that are set by "or" are the same in any order
   parallel_for(context, rays.starts.size(), kGrain, [&](std::size_t begin, std::size_t end) {

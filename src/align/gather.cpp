@@ -111,12 +111,11 @@ Gathered gathered_of(const Sums& sums, double width) {
     mean[i] = sums.first[static_cast<std::size_t>(i)] / gathered.count;
     gathered.to_sensor[i] = sums.to_sensor[static_cast<std::size_t>(i)];
   }
-  std::size_t at = 0;
+  Eigen::Index at = 0;
   for (Eigen::Index i = 0; i < 3; ++i)
-    for (Eigen::Index j = i; j < 3; ++j) {
-      const double about_mean = sums.second[at++] - gathered.count * mean[i] * mean[j];
-      gathered.scatter(i, j) = gathered.scatter(j, i) = about_mean * step * step;
-    }
+    for (Eigen::Index j = i; j < 3; ++j, ++at)
+      gathered.scatter[at] =
+          (sums.second[static_cast<std::size_t>(at)] - gathered.count * mean[i] * mean[j]) * step * step;
   // Offsets were rounded down: half a step, on average.
   gathered.mean = corner_of(sums.key, width) + (mean.array() + 0.5).matrix() * step;
   return gathered;
@@ -181,10 +180,18 @@ Surfaces gather_surfaces(const Context& context, RaySource& source, const Survey
   source.rewind();
   surfaces.sky = sky.take();
   surfaces.gathered.resize(all.size());
-  std::sort(all.begin(), all.end(), [](const Sums& a, const Sums& b) { return a.key < b.key; });
-  parallel_for(context, all.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  struct Place {
+    std::uint64_t key;
+    std::uint32_t from;
+  };
+  std::vector<Place> places(all.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = {all[i].key, static_cast<std::uint32_t>(i)};
+  parallel_sort(context, places.begin(), places.end(),
+                [](const Place& a, const Place& b) { return a.key < b.key; });
+  parallel_for(context, places.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      surfaces.gathered[i] = gathered_of(all[i], width);
+      surfaces.gathered[i] = gathered_of(all[places[i].from], width);
   });
   return surfaces;
 }

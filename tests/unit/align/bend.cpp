@@ -50,9 +50,8 @@ TEST(AlignBent, AMetreIn500IsTakenOut) {
   EXPECT_GT(distances(rays, truth).first, 0.2);  // a rigid motion does not do
   bend_rays(found.bend, rays);
   const auto [most, usual] = distances(rays, truth);
-  // With a point for each 30 cm; to a centimetre where there are ten times as many (bench_accuracy bends).
-  EXPECT_LT(most, 0.08);
-  EXPECT_LT(usual, 0.04);
+  EXPECT_LT(most, 0.01);
+  EXPECT_LT(usual, 0.003);
 }
 
 TEST(AlignBent, WhatIsNotBentStaysStraight) {
@@ -65,6 +64,8 @@ TEST(AlignBent, WhatIsNotBentStaysStraight) {
   EXPECT_TRUE(found.bend.is_none());
   EXPECT_EQ(found.pose.rotation, rigid.pose.rotation);
   EXPECT_EQ(found.pose.translation, rigid.pose.translation);
+  rays.transform(found.pose);
+  EXPECT_LT(distances(rays, long_street(2)).first, 0.005);
   const CloudAlignment room = bent_onto(room_scan(2), room_scan(1), {.local = true, .nonrigid = true});
   EXPECT_TRUE(room.bend.is_none());
 }

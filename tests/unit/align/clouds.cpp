@@ -86,8 +86,8 @@ TEST(AlignClouds, TiltedByTenDegrees) {
   moved.rotation = rotation_pose({0.14, -0.1, 0.0}).rotation * moved.rotation;
   rays.transform(moved);
   const CloudAlignment found = aligned_with(rays, reference);
-  // Right, or not trusted.
-  if (found.doubt.empty()) expect_undone(found.pose, moved, room_scan(1), 0.1 * kDegree, 0.03);
+  EXPECT_EQ(found.doubt, "");
+  expect_undone(found.pose, moved, room_scan(1), 0.05 * kDegree, 0.01);
 }
 
 TEST(AlignClouds, DoubtsWhatNothingTells) {
