@@ -48,6 +48,13 @@ Seen seen_of(const Patch& patch, const Pose& pose, const Observed& other, double
   return seen;
 }
 
+void count(const Seen& seen, Agreement::Counts& counts) {
+  (seen.is_same     ? counts.same
+   : seen.is_beside ? counts.other
+   : seen.is_empty  ? counts.empty
+                    : counts.unknown) += 1.0;
+}
+
 /// Columns of space and what is in them.
 class Columns {
  public:
@@ -106,10 +113,7 @@ Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose, c
     const Seen seen = seen_of(patch, pose, other, tolerance);
     const bool is_upright = patch.is_flat() && std::abs((pose.rotation * patch.normal).z()) < 0.5;
     Agreement::Counts& counts = is_upright ? agreement.upright : agreement.others;
-    (seen.is_same     ? counts.same
-     : seen.is_beside ? counts.other
-     : seen.is_empty  ? counts.empty
-                      : counts.unknown) += 1.0;
+    count(seen, counts);
     const bool is_against = seen.is_empty || (is_clean && is_upright && !seen.is_same && seen.is_beside);
     if (seen.is_same || is_against) columns.add(pose * patch.mean, is_against);
   }
@@ -117,33 +121,49 @@ Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose, c
   return agreement;
 }
 
-Preference preference_of(std::span<const JudgedPatch> patches, const Pose& pose, const Pose& rival,
-                         const Observed& other, double tolerance) {
-  // In the frame of the cloud, so that a column holds the same patches in both poses.
-  constexpr double kSmallColumn = 4.0;  // cubes of free space
-  const double width = kSmallColumn * other.free.width();
-  std::vector<std::pair<std::pair<double, double>, double>> differences;
-  for (const JudgedPatch& judged : patches) {
-    const Patch& patch = judged.patch;
-    const Seen at_pose = seen_of(patch, pose, other, tolerance),
-               at_rival = seen_of(patch, rival, other, tolerance);
-    if (!at_pose.is_known() || !at_rival.is_known()) continue;
-    const double difference = at_rival.cost - at_pose.cost;
-    const Eigen::Array2d cell = (patch.mean.head<2>().array() / width).floor();
-    differences.push_back({{cell.x(), cell.y()}, difference});
+Witnesses::Witnesses(const PatchLevel& level, std::size_t most) : patches_(judged_patches(level, most)) {
+  constexpr double kCell = 4.0;  // patches
+  KeyTable<std::uint32_t> numbers;
+  for (const JudgedPatch& judged : patches_) {
+    const Eigen::Array<std::int64_t, 3, 1> cell =
+        (judged.patch.mean.array() / (kCell * level.width())).floor().cast<std::int64_t>();
+    const auto added = numbers.add(voxel_place({cell.x(), cell.y(), cell.z()}).key);
+    if (added.is_new) *added.value = static_cast<std::uint32_t>(count_++);
+    cells_.push_back(*added.value);
   }
-  std::sort(differences.begin(), differences.end());
-  Preference preference;
-  double column = 0.0;
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    column += differences[i].second;
-    if (i + 1 < differences.size() && differences[i + 1].first == differences[i].first) continue;
-    preference.sum += column;
-    preference.squares += column * column;
-    column = 0.0;
+}
+
+Evidence evidence_of(const Witnesses& witnesses, const Pose& pose, const Observed& other, double tolerance) {
+  constexpr double kRound = 0.5;   // weight of patches that are not flat: where these are is less sure
+  constexpr double kNearby = 0.3;  // cost of those up to which they fit
+  constexpr double kApart = 0.3;   // weight of being apart from a surface, where being refuted has 1
+  constexpr double kFew = 3.0;     // patches, of which a cell counts half
+  struct Sums {
+    double known = 0.0, apart = 0.0, refuted = 0.0;
+  };
+  std::vector<Sums> cells(witnesses.cells());
+  Evidence evidence;
+  for (std::size_t i = 0; i < witnesses.patches().size(); ++i) {
+    const auto& [patch, is_clean] = witnesses.patches()[i];
+    const Seen seen = seen_of(patch, pose, other, tolerance);
+    count(seen, evidence.counts);
+    if (!seen.is_known()) continue;
+    const double weight = patch.is_flat() ? 1.0 : kRound;
+    Sums& cell = cells[witnesses.cell_of(i)];
+    cell.known += weight;
+    if (patch.is_flat() || seen.cost > kNearby) cell.apart += weight * seen.cost;
+    if (seen.is_empty || (is_clean && !seen.is_same)) cell.refuted += weight;
   }
-  preference.count = static_cast<double>(differences.size());
-  return preference;
+  evidence.cells.reserve(cells.size());
+  for (const Sums& cell : cells) {
+    const double scale = 1.0 / (cell.known + kFew), known = scale * cell.known,
+                 against = scale * (cell.refuted + kApart * cell.apart);
+    evidence.cells.push_back({static_cast<float>(known), static_cast<float>(against)});
+    evidence.known += known;
+    evidence.against += against;
+    evidence.refuted += scale * cell.refuted;
+  }
+  return evidence;
 }
 
 }  // namespace ray::align

@@ -82,29 +82,45 @@ FineFit narrower_fit(const Context& context, RaySource& cloud_source, RaySource&
   return narrower.count < fit.count ? fit : narrower;
 }
 
-/// Hypotheses, the best first, and after them those that were looked for beside the best.
-struct Judged {
-  std::vector<Hypothesis> all;
-  std::vector<Hypothesis> aside;
-};
+/// Adds what comes of the poses beside one to others, the best first.
+void add_aside(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
+               const Pose& pose, std::vector<Hypothesis>& all) {
+  const std::vector<Hypothesis> aside =
+      fitted(context, cloud, reference, jury, aside_of(context, pose, cloud, reference, jury));
+  all.insert(all.end(), aside.begin(), aside.end());
+  sort_by_score(all);
+}
 
-Judged judge(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
-             bool local) {
-  constexpr std::size_t kKept = 24;
-  Judged judged;
-  if (!local) judged.all = rough_hypotheses(context, cloud, reference);
-  judged.all.resize(std::min(judged.all.size(), kKept));
+/// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
+/// are looked for too, and those beside the best of all until there is no better.
+std::vector<Hypothesis> judge(const Context& context, const Known& cloud, const Known& reference,
+                              const Jury& jury, bool local) {
+  constexpr std::size_t kKept = 24, kBeside = 3;
+  constexpr int kRounds = 3;
+  constexpr double kFarBelow = 20.0;  // cells
+  std::vector<Hypothesis> all;
+  if (!local) all = rough_hypotheses(context, cloud, reference);
+  all.resize(std::min(all.size(), kKept));
   const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
-  judged.all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
-  judged.all = fitted(context, cloud, reference, jury, std::move(judged.all));
-  jury.put_best_first(judged.all);
-  judged.aside = aside_of(context, judged.all.front().pose, cloud, reference);
-  judged.aside = fitted(context, cloud, reference, jury, std::move(judged.aside));
-  judged.aside.insert(judged.aside.begin(), judged.all.front());
-  sort_by_score(judged.aside);
-  jury.put_best_first(judged.aside);
-  judged.all.insert(judged.all.begin(), judged.aside.front());
-  return judged;
+  all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
+  all = fitted(context, cloud, reference, jury, std::move(all));
+  std::vector<Pose> looked;
+  const auto is_looked = [&](const Hypothesis& one) {
+    return std::any_of(looked.begin(), looked.end(),
+                       [&](const Pose& pose) { return is_same_place(one.pose, pose, cloud); });
+  };
+  const std::vector<Hypothesis> first = all;
+  for (const Hypothesis& one : first)
+    if (looked.size() < kBeside && !one.is_idle() && !is_looked(one) &&
+        one.score > all.front().score - kFarBelow) {
+      looked.push_back(one.pose);
+      add_aside(context, cloud, reference, jury, one.pose, all);
+    }
+  for (int round = 0; round < kRounds && !is_looked(all.front()); ++round) {
+    looked.push_back(all.front().pose);
+    add_aside(context, cloud, reference, jury, looked.back(), all);
+  }
+  return all;
 }
 
 /// Why the best is not to be trusted; empty if it is.
@@ -113,40 +129,32 @@ struct Doubt {
   bool is_elsewhere = false;  ///< another place is as good
 };
 
-/// Of the others, those that came to lie elsewhere are rivals, and those that began beside it and came to
-/// about the same place should have come to just that.
-Doubt doubt_of(const Judged& judged, const Known& cloud, const Jury& jury, double overlap) {
-  constexpr double kLeastOverlap = 0.1, kMostRival = 0.7, kSigmas = 2.5;
-  constexpr double kRefuted = 2.0;  // times as much against it as against the best
-  constexpr double kCleaner = 0.5;  // as much against it as against the best
-  constexpr double kNearly = 0.01;  // against the best, for a cleaner one to matter whatever its score
-  constexpr double kLoose = 0.25;   // widths
-  const Hypothesis& best = judged.all.front();
-  const double same = best.there.all().same + best.back.all().same, against = best.against_share();
-  const std::string found = "the best overlap found is " + percent(overlap);
-  if (same < Hypothesis::kLeastSame || overlap < kLeastOverlap || !(best.score > 0.0))
-    return {"too few surfaces are in both: " + found};
-  if (best.is_refuted())
-    return {percent(against) +
+/// Others are rivals wherever they came to lie elsewhere, however near.
+Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud) {
+  constexpr double kSigmas = 2.0;
+  constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
+  constexpr double kLess = 0.5;          // of the score of the best, for others to be rivals
+  const Hypothesis& best = judged.front();
+  const std::string found = "the best overlap found is " + percent(best.overlap());
+  if (best.is_idle()) return {"too few surfaces are in both: " + found};
+  if (best.refuted_share() > kMostRefuted)
+    return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
+  const auto is_elsewhere = [&](const Pose& pose) {
+    constexpr double kApart = 0.25;  // widths
+    return (pose.translation - best.pose.translation).norm() > kApart * cloud.fine.width() ||
+           !is_same_place(pose, best.pose, cloud);
+  };
   const auto is_rival = [&](const Hypothesis& other) {
-    const bool is_refuted = other.is_refuted() && other.against_share() > kRefuted * against;
-    const bool is_cleaner = against > kNearly && other.score > 0.0 &&
-                            other.there.all().same + other.back.all().same >= Hypothesis::kLeastSame &&
-                            other.against_share() < kCleaner * against;
-    return (other.score > kMostRival * best.score || is_cleaner) && !is_refuted &&
-           !jury.is_clearly_better(best.pose, other.pose, kSigmas);
+    return is_elsewhere(other.pose) && !other.is_idle() &&
+           other.score > best.score - kLess * std::abs(best.score) && sigmas_worse(other, best) < kSigmas;
   };
-  const auto is_elsewhere = [&](const Hypothesis& other) {
-    return !is_same_place(other.pose, best.pose, cloud) && is_rival(other);
-  };
-  const auto is_loose = [&](const Hypothesis& other) {
-    const double apart = (other.pose.translation - best.pose.translation).norm();
-    return apart > kLoose * cloud.fine.width() && is_rival(other);
-  };
-  if (std::any_of(judged.all.begin(), judged.all.end(), is_elsewhere) ||
-      std::any_of(judged.aside.begin(), judged.aside.end(), is_loose))
-    return {"it fits nearly as well elsewhere: " + found, true};
+  const auto is_far = [&](const Hypothesis& other) { return !is_same_place(other.pose, best.pose, cloud); };
+  const auto is_far_rival = [&](const Hypothesis& other) { return is_far(other) && is_rival(other); };
+  if (std::any_of(judged.begin(), judged.end(), is_rival))
+    return {"it fits nearly as well elsewhere: " + found,
+            std::any_of(judged.begin(), judged.end(), is_far_rival)};
+  if (is_elsewhere(last)) return {"nothing holds it where it fits best: " + found};
   return {};
 }
 
@@ -167,17 +175,17 @@ void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, Cl
 
 Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
   const Jury jury(cloud, reference);
-  const Judged judged = judge(context, cloud, reference, jury, local);
-  const Hypothesis& best = judged.all.front();
+  const std::vector<Hypothesis> judged = judge(context, cloud, reference, jury, local);
+  const Hypothesis& best = judged.front();
   Placed placed;
   placed.fit = last_fit(context, cloud, reference, best.pose);
   CloudAlignment& alignment = placed.alignment;
   tell_fit(placed.fit, cloud, reference, alignment);
-  const Agreement::Counts there = best.there.all(), back = best.back.all();
+  const Agreement::Counts &there = best.there.counts, &back = best.back.counts;
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  const Doubt doubt = doubt_of(judged, cloud, jury, std::max(alignment.overlap, alignment.reference_overlap));
+  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud);
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;
@@ -216,8 +224,9 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   placed.fit = narrower_fit(context, cloud_source, reference_source, cloud, reference, placed.fit);
   tell_fit(placed.fit, cloud, reference, placed.alignment);
   CloudAlignment alignment = placed.alignment;
-  // Where another place is as good, a bend does not tell which.
-  if (rule.nonrigid && !placed.is_elsewhere) {
+  // Where another place is as good, a bend does not tell which; but what is bent may fit here and there
+  // alike, and is judged anew.
+  if (rule.nonrigid && (rule.local || !placed.is_elsewhere)) {
     const BendFit fit = fit_bend(context, cloud, reference, placed.fit.pose);
     alignment.bend_gain = fit.gain;
     if (fit.is_better()) alignment = judge_bent(context, fit, cloud_source, cloud, reference);

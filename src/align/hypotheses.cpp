@@ -1,6 +1,7 @@
 #include "hypotheses.h"
 
 #include "coarse.h"
+#include "fine.h"
 #include "rises.h"
 
 #include <raycloud/exec/parallel.h>
@@ -14,20 +15,17 @@
 namespace ray::align {
 namespace {
 
-constexpr double kLeastPoints = 5.0;
 /// Of the largest information: wide patches of level ground and of foliage say little of shifts.
 constexpr double kHeld = 0.02;
-constexpr double kAgainst = 20.0, kAgainstFitted = 10.0,
-                 kAgainstAtFirst = 4.0;  // weights, against surfaces that agree
+constexpr double kAgainstFitted = 10.0, kAgainstAtFirst = 4.0;  // weights, against surfaces that agree
 
 /// What agrees, less what speaks against it, which weighs most: there are one or two in a hundred where
 /// clouds lie as they should, and five where the two halves of a building that look the same lie on each
 /// other. Level surfaces agree with any other of their height: upright ones tell.
-double score_of(const Agreement& there, const Agreement& back, double against) {
+double score_of(const Agreement& agreement, double against) {
   constexpr double kOther = 0.5, kOthers = 0.5;
   const auto of = [](const Agreement::Counts& counts) { return counts.same - kOther * counts.other; };
-  return of(there.upright) + of(back.upright) + kOthers * (of(there.others) + of(back.others)) -
-         against * (there.against + back.against);
+  return of(agreement.upright) + kOthers * of(agreement.others) - against * agreement.against;
 }
 
 /// Of those that put the cloud to the same place, the best.
@@ -56,39 +54,36 @@ std::vector<Hypothesis> without_twins(const std::vector<Hypothesis>& hypotheses,
   return distinct;
 }
 
-Pose inverse_of(const Pose& pose) {
-  return {pose.rotation.transpose(), -(pose.rotation.transpose() * pose.translation)};
-}
-
 Pose pose_of(const Candidate& candidate, double rise) {
   return {Eigen::AngleAxisd(candidate.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
           {candidate.shift.x(), candidate.shift.y(), rise}};
 }
 
-/// A grid of shifts around a pose, half a width apart.
-std::vector<Hypothesis> small_shifts(const Context& context, const Pose& pose, const Known& cloud,
-                                     const Known& reference) {
+/// Of a grid of shifts around a pose, half a width apart, the best, no two next to each other.
+std::vector<Hypothesis> small_shifts(const Context& context, const Pose& pose, double width,
+                                     const Jury& jury) {
   constexpr int kSteps = 6;
-  constexpr std::size_t kJudged = 600, kBest = 6;
-  const std::vector<JudgedPatch> judged = judged_patches(cloud.fine, kJudged);
-  const double step = 0.5 * std::max(cloud.fine.width(), reference.fine.width());
+  constexpr std::size_t kBest = 6;
+  constexpr double kStep = 0.5, kApart = 0.8;  // widths
   std::vector<Hypothesis> shifted;
   for (int y = -kSteps; y <= kSteps; ++y)
     for (int x = -kSteps; x <= kSteps; ++x) {
       if (x == 0 && y == 0) continue;
       shifted.push_back({pose, {}, {}, 0.0});
-      shifted.back().pose.translation += step * Eigen::Vector3d(x, y, 0.0);
+      shifted.back().pose.translation += kStep * width * Eigen::Vector3d(x, y, 0.0);
     }
   parallel_for(context, shifted.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Agreement there = agreement_of(judged, shifted[i].pose, {reference.fine, reference.free},
-                                           tolerance_of(cloud, reference));
-      shifted[i].score = score_of(there, {}, kAgainst);
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      shifted[i].score = jury.glance(shifted[i].pose);
   });
   sort_by_score(shifted);
-  shifted.resize(kBest);
-  return shifted;
+  std::vector<Hypothesis> best;
+  for (const Hypothesis& one : shifted)
+    if (best.size() < kBest && std::none_of(best.begin(), best.end(), [&](const Hypothesis& other) {
+          return (one.pose.translation - other.pose.translation).norm() < kApart * width;
+        }))
+      best.push_back(one);
+  return best;
 }
 
 /// The best of all candidates at all heights, at a glance.
@@ -105,7 +100,7 @@ std::vector<Hypothesis> promising_of(const Context& context, const Known& cloud,
       for (const double rise : heights.rises(levels, candidates[i], kRises)) {
         const Pose pose = pose_of(candidates[i], rise);
         const Agreement there = agreement_of(glanced, pose, {reference.fine, reference.free}, tolerance);
-        of_candidate[i].push_back({pose, there, {}, score_of(there, {}, kAgainstAtFirst)});
+        of_candidate[i].push_back({pose, {}, {}, score_of(there, kAgainstAtFirst)});
       }
   });
   std::vector<Hypothesis> hypotheses;
@@ -132,8 +127,8 @@ std::vector<Hypothesis> roughly_fitted(const Context& context, const Known& clou
       one.pose =
           fit_patches(middle, reference.middle, one.pose, {0.6 * reference.middle.width(), 8, true, kHeld})
               .pose;
-      one.there = agreement_of(judged, one.pose, {reference.fine, reference.free}, tolerance);
-      one.score = score_of(one.there, {}, kAgainstFitted);
+      one.score = score_of(agreement_of(judged, one.pose, {reference.fine, reference.free}, tolerance),
+                           kAgainstFitted);
     }
   });
   return hypotheses;
@@ -141,68 +136,9 @@ std::vector<Hypothesis> roughly_fitted(const Context& context, const Known& clou
 
 }  // namespace
 
-Known::Known(const Context& context, Surfaces gathered)
-    : surfaces(std::move(gathered)),
-      narrow(context, surfaces, 1, kLeastPoints),
-      fine(context, surfaces, 2, kLeastPoints),
-      middle(context, surfaces, 4, kLeastPoints),
-      wide(context, surfaces, 8, kLeastPoints),
-      free(context, surfaces, fine) {}
-
 void sort_by_score(std::vector<Hypothesis>& hypotheses) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
-}
-
-double tolerance_of(const Known& cloud, const Known& reference) {
-  return 0.15 * std::max(cloud.fine.width(), reference.fine.width());
-}
-
-bool is_same_place(const Pose& a, const Pose& b, const Known& cloud) {
-  constexpr double kTurn = 0.03;  // rad
-  const double apart = (a.translation - b.translation).norm();
-  const Eigen::Matrix3d between = a.rotation.transpose() * b.rotation;
-  return apart < 1.5 * cloud.fine.width() && Eigen::AngleAxisd(between).angle() < kTurn;
-}
-
-Jury::Jury(const Known& cloud, const Known& reference)
-    : cloud_(cloud),
-      reference_(reference),
-      tolerance_(tolerance_of(cloud, reference)),
-      there_(judged_patches(cloud.fine, kJudged)),
-      back_(judged_patches(reference.fine, kJudged)),
-      more_there_(judged_patches(cloud.fine, kCompared)),
-      more_back_(judged_patches(reference.fine, kCompared)) {}
-
-void Jury::judge(Hypothesis& one) const {
-  one.there = agreement_of(there_, one.pose, {reference_.fine, reference_.free}, tolerance_);
-  one.back = agreement_of(back_, inverse_of(one.pose), {cloud_.fine, cloud_.free}, tolerance_);
-  one.score = score_of(one.there, one.back, kAgainst);
-}
-
-bool Jury::is_clearly_better(const Pose& pose, const Pose& rival, double sigmas) const {
-  constexpr double kLeast = 100.0;      // patches
-  constexpr double kLeastShare = 0.01;  // of these, that fit under one and not at all under the other
-  Preference both = preference_of(more_there_, pose, rival, {reference_.fine, reference_.free}, tolerance_);
-  both +=
-      preference_of(more_back_, inverse_of(pose), inverse_of(rival), {cloud_.fine, cloud_.free}, tolerance_);
-  return both.count >= kLeast && both.sum > kLeastShare * both.count && both.sigmas() > sigmas;
-}
-
-void Jury::put_best_first(std::vector<Hypothesis>& all) const {
-  constexpr double kSigmas = 4.0, kSigmasOfRefuted = 1.5;
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    const Hypothesis &one = all[i], &other = all[best];
-    // What is better has less against it, too.
-    if (one.there.all().same + one.back.all().same < Hypothesis::kLeastSame ||
-        one.against_share() > other.against_share())
-      continue;
-    const bool by_less = other.is_refuted() && !one.is_refuted();
-    if (is_clearly_better(one.pose, other.pose, by_less ? kSigmasOfRefuted : kSigmas)) best = i;
-  }
-  const auto begin = all.begin(), at = begin + static_cast<std::ptrdiff_t>(best);
-  std::rotate(begin, at, at + 1);
 }
 
 std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud, const Known& reference) {
@@ -215,10 +151,10 @@ std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cl
 }
 
 std::vector<Hypothesis> aside_of(const Context& context, const Pose& pose, const Known& cloud,
-                                 const Known& reference) {
+                                 const Known& reference, const Jury& jury) {
   constexpr double kFar = 2.5;   // widths
   constexpr double kTurn = 0.1;  // rad
-  const double step = kFar * std::max(cloud.fine.width(), reference.fine.width());
+  const double width = std::max(cloud.fine.width(), reference.fine.width()), step = kFar * width;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Patch& patch : cloud.wide.patches())
     centre += pose * patch.mean / static_cast<double>(cloud.wide.patches().size());
@@ -233,7 +169,7 @@ std::vector<Hypothesis> aside_of(const Context& context, const Pose& pose, const
     aside.push_back(
         {{rotation * pose.rotation, rotation * (pose.translation - centre) + centre}, {}, {}, 0.0});
   }
-  const std::vector<Hypothesis> shifted = small_shifts(context, pose, cloud, reference);
+  const std::vector<Hypothesis> shifted = small_shifts(context, pose, width, jury);
   aside.insert(aside.end(), shifted.begin(), shifted.end());
   return aside;
 }

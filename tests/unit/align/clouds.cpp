@@ -110,6 +110,19 @@ TEST(AlignClouds, DoubtsWhatNothingTells) {
   EXPECT_NE(aligned_with(line, room).doubt, "");
 }
 
+/// The halves of a hall with a strip of 8 m in common. Turned by 180 degrees the walls of one lie on all of
+/// the other's, and only the pillars tell that they must not.
+TEST(AlignClouds, TheLessOverlapWhereNothingSpeaksAgainstIt) {
+  const RayCloud west = part_of(hall_scan(1), -100.0, 4.0), reference = part_of(hall_scan(2), -4.0, 100.0);
+  RayCloud rays = west;
+  const Pose moved = moved_by(130.0, {30.0, -20.0, 2.0});
+  rays.transform(moved);
+  const CloudAlignment found = aligned_with(rays, reference);
+  EXPECT_EQ(found.doubt, "");
+  expect_undone(found.pose, moved, west, 0.2 * kDegree, 0.05);
+  EXPECT_LT(found.overlap, 0.7);
+}
+
 TEST(AlignClouds, NeedsSurfaces) {
   const RayCloud room = room_scan(1, 5000);
   RayCloud none = room;

@@ -8,8 +8,11 @@
 #include <raycloud/synth/simulate.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace ray::test {
 
@@ -130,6 +133,58 @@ inline RayCloud long_street(std::uint64_t seed, std::size_t rays = 200'000) {
     cloud.bounded[i] = 1;
   }
   return cloud;
+}
+
+/// A hall of 24 m by 8 m that looks the same when it is turned by 180 degrees, but for its pillars; another
+/// scan for each seed.
+inline RayCloud hall_scan(std::uint64_t seed, std::uint64_t rays = 120'000) {
+  Scene scene;
+  scene.kind = "hall";
+  scene.seed = 1;
+  const auto add_box = [&](SceneLabel label, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    SceneObject object;
+    object.id = static_cast<std::int32_t>(scene.objects.size());
+    object.label = label;
+    for (int i = 0; i < 8; ++i)
+      object.mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
+                                        (i & 4) != 0 ? high.z() : low.z());
+    object.mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    scene.objects.push_back(std::move(object));
+  };
+  add_box(SceneLabel::floor, {-12.2, -4.2, -0.2}, {12.2, 4.2, 0.0});
+  for (const double side : {-4.1, 4.1})
+    add_box(SceneLabel::wall, {-12.2, side - 0.1, 0.0}, {12.2, side + 0.1, 3.0});
+  for (const double side : {-12.1, 12.1})
+    add_box(SceneLabel::wall, {side - 0.1, -4.0, 0.0}, {side + 0.1, 4.0, 3.0});
+  for (const auto& [x, y] : {std::pair(-10.0, 2.0),
+                             {-7.5, -2.5},
+                             {-5.0, 3.0},
+                             {-3.0, -2.0},
+                             {-1.4, 2.2},
+                             {0.3, -2.7},
+                             {1.4, 3.1},
+                             {4.0, 1.8},
+                             {5.5, -3.0},
+                             {8.5, 2.6},
+                             {10.5, -1.9}})
+    add_box(SceneLabel::wall, {x - 0.25, y - 0.25, 0.0}, {x + 0.25, y + 0.25, 2.8});
+  for (int i = 0; i <= 440; ++i) {
+    scene.path.times.push_back(0.1 * i);
+    scene.path.positions.emplace_back(-11.0 + 0.05 * i, 0.1, 1.5);
+  }
+  return read_all({}, *simulate(scene, {.rays = rays, .seed = seed}));
+}
+
+/// The rays that begin and end at an x between two limits.
+inline RayCloud part_of(RayCloud rays, double low, double high) {
+  std::vector<std::uint8_t> mask(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto [least, most] = std::minmax({rays.starts[i].x(), rays.ends[i].x()});
+    mask[i] = rays.bounded[i] != 0 && least > low && most < high ? 1 : 0;
+  }
+  rays.select(mask);
+  return rays;
 }
 
 }  // namespace ray::test

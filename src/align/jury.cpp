@@ -1,0 +1,87 @@
+#include "jury.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ray::align {
+namespace {
+
+constexpr double kLeastPoints = 5.0;  // of a patch
+
+Pose inverse_of(const Pose& pose) {
+  return {pose.rotation.transpose(), -(pose.rotation.transpose() * pose.translation)};
+}
+
+}  // namespace
+
+Known::Known(const Context& context, Surfaces gathered)
+    : surfaces(std::move(gathered)),
+      narrow(context, surfaces, 1, kLeastPoints),
+      fine(context, surfaces, 2, kLeastPoints),
+      middle(context, surfaces, 4, kLeastPoints),
+      wide(context, surfaces, 8, kLeastPoints),
+      free(context, surfaces, fine) {}
+
+double tolerance_of(const Known& cloud, const Known& reference) {
+  return 0.15 * std::max(cloud.fine.width(), reference.fine.width());
+}
+
+bool is_same_place(const Pose& a, const Pose& b, const Known& cloud) {
+  constexpr double kTurn = 0.03;  // rad
+  const double apart = (a.translation - b.translation).norm();
+  const Eigen::Matrix3d between = a.rotation.transpose() * b.rotation;
+  return apart < 1.5 * cloud.fine.width() && Eigen::AngleAxisd(between).angle() < kTurn;
+}
+
+double Hypothesis::overlap() const {
+  const auto share = [](const Agreement::Counts& counts) {
+    const double all = counts.known() + counts.unknown;
+    return all > 0.0 ? counts.same / all : 0.0;
+  };
+  return std::max(share(there.counts), share(back.counts));
+}
+
+Jury::Jury(const Known& cloud, const Known& reference)
+    : cloud_(cloud),
+      reference_(reference),
+      tolerance_(tolerance_of(cloud, reference)),
+      there_(cloud.fine, kJudged),
+      back_(reference.fine, kJudged),
+      few_there_(cloud.fine, kGlanced),
+      few_back_(reference.fine, kGlanced) {}
+
+void Jury::judge(Hypothesis& one) const {
+  one.there = evidence_of(there_, one.pose, {reference_.fine, reference_.free}, tolerance_);
+  one.back = evidence_of(back_, inverse_of(one.pose), {cloud_.fine, cloud_.free}, tolerance_);
+  one.score = one.is_idle() ? std::numeric_limits<double>::lowest() : one.there.sum() + one.back.sum();
+}
+
+double Jury::glance(const Pose& pose) const {
+  return evidence_of(few_there_, pose, {reference_.fine, reference_.free}, tolerance_).sum() +
+         evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
+}
+
+double sigmas_worse(const Hypothesis& other, const Hypothesis& best) {
+  const double known = best.there.known + best.back.known;
+  const double usual = known > 0.0 ? (best.there.against + best.back.against) / known : 0.0;
+  const auto excess = [usual](const Evidence::Cell& cell) {
+    return static_cast<double>(cell.against) - usual * static_cast<double>(cell.known);
+  };
+  double sum = 0.0, squares = 0.0;
+  const auto add = [&](const Evidence& a, const Evidence& b) {
+    for (std::size_t i = 0; i < a.cells.size(); ++i) {
+      const double difference = excess(a.cells[i]) - excess(b.cells[i]);
+      sum += difference;
+      squares += difference * difference;
+    }
+  };
+  add(other.there, best.there);
+  add(other.back, best.back);
+  // Noise alone is significant where it is the same everywhere.
+  constexpr double kLeastShare = 0.01;
+  return sum > kLeastShare * known ? sum / std::sqrt(squares) : 0.0;
+}
+
+}  // namespace ray::align
