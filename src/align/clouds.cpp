@@ -137,7 +137,7 @@ Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Kn
   const Hypothesis& best = judged.front();
   const std::string found = "the best overlap found is " + percent(best.overlap());
   if (best.is_idle()) return {"too few surfaces are in both: " + found};
-  if (best.refuted_share() > kMostRefuted)
+  if (best.refuted_share() > kMostRefuted && !best.is_refuted_by_one_only())
     return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
   const auto is_elsewhere = [&](const Pose& pose) {

@@ -63,6 +63,15 @@ double Jury::glance(const Pose& pose) const {
          evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
 }
 
+bool Hypothesis::is_refuted_by_one_only() const {
+  constexpr double kNearlyNone = 0.02, kMost = 0.2;
+  constexpr double kAlike = 0.5;  // of what one side tells of, for the other to know as well
+  const auto share = [](const Evidence& side) { return side.known > 0.0 ? side.refuted / side.known : 0.0; };
+  const Evidence& less = share(there) < share(back) ? there : back;
+  const Evidence& more = &less == &there ? back : there;
+  return share(less) < kNearlyNone && share(more) < kMost && less.known > kAlike * more.known;
+}
+
 double sigmas_worse(const Hypothesis& other, const Hypothesis& best) {
   const double known = best.there.known + best.back.known;
   const double usual = known > 0.0 ? (best.there.against + best.back.against) / known : 0.0;

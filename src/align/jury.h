@@ -36,6 +36,9 @@ struct Hypothesis {
     const double known = there.known + back.known;
     return known > 0.0 ? (there.refuted + back.refuted) / known : 0.0;
   }
+  /// One cloud has much that is not in the other, and the other nearly nothing that is not in it: leaves,
+  /// snow, or furniture. Of a wrong pose both have.
+  [[nodiscard]] bool is_refuted_by_one_only() const;
 };
 
 /// By how many standard errors more speaks against a pose than is usual under the best one, if cells are
