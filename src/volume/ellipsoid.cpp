@@ -13,10 +13,6 @@ constexpr double kThinnest = 0.002;  // m
 
 }  // namespace
 
-double semi_axis_of(const Surfel& surfel) {
-  return std::max(kThinnest, std::sqrt(kScale2 * surfel.variances[2]));
-}
-
 Ellipsoid ellipsoid_of(const Surfel& surfel, const Eigen::Vector3d& point, const Eigen::Vector3d& to_sensor,
                        double range_noise) {
   constexpr double kThinnestShare2 = 1.0 / (200.0 * 200.0);

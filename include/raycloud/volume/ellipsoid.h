@@ -26,9 +26,6 @@ struct Ellipsoid {
 [[nodiscard]] Ellipsoid ellipsoid_of(const Surfel& surfel, const Eigen::Vector3d& point,
                                      const Eigen::Vector3d& to_sensor, double range_noise);
 
-/// The longest semi-axis of the ellipsoid of a surfel without noise of the range, at most: m.
-[[nodiscard]] double semi_axis_of(const Surfel& surfel);
-
 /// How a line from start to end meets an ellipsoid. Where it comes nearest is told in the ellipsoid's own
 /// measure, in which it is a ball of radius 1; fractions are of the way from start to end, and may lie
 /// outside 0 to 1.
