@@ -30,11 +30,6 @@ struct Agreement {
   /// without those in the tenth of space where most of them are. There something may have changed; what is
   /// wrong with a pose is wrong everywhere.
   double against = 0.0;
-
-  [[nodiscard]] Counts all() const {
-    Counts sum = upright;
-    return sum += others;
-  }
   Agreement& operator+=(const Agreement& more);
 };
 

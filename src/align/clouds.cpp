@@ -70,12 +70,12 @@ FineFit last_fit(const Context& context, const Known& cloud, const Known& refere
 /// plane. Ones half as wide take their place where as many find another.
 FineFit narrower_fit(const Context& context, RaySource& cloud_source, RaySource& reference_source,
                      const Known& cloud, const Known& reference, const FineFit& fit) {
-  constexpr double kFew = 2000.0, kGate = 0.25, kLeastPoints = 5.0;
+  constexpr double kFew = 2000.0, kGate = 0.25;
   if (fit.count >= kFew) return fit;
   const auto level_of = [&](RaySource& source, const Known& known) {
     return PatchLevel(context,
                       gather_surfaces(context, source, known.surfaces.survey, 0.5 * known.surfaces.width), 1,
-                      kLeastPoints);
+                      Known::kLeastPoints);
   };
   const PatchLevel from = level_of(cloud_source, cloud), onto = level_of(reference_source, reference);
   const FineFit narrower = fit_patches(context, from.patches(), onto, fit.pose, {kGate * onto.width(), 20});

@@ -8,8 +8,6 @@
 namespace ray::align {
 namespace {
 
-constexpr double kLeastPoints = 5.0;  // of a patch
-
 Pose inverse_of(const Pose& pose) {
   return {pose.rotation.transpose(), -(pose.rotation.transpose() * pose.translation)};
 }
@@ -43,6 +41,15 @@ double Hypothesis::overlap() const {
   return std::max(share(there.counts), share(back.counts));
 }
 
+bool Hypothesis::is_refuted_by_one_only() const {
+  constexpr double kNearlyNone = 0.02, kMost = 0.2;
+  constexpr double kAlike = 0.5;  // of what one side tells of, for the other to know as well
+  const auto share = [](const Evidence& side) { return side.known > 0.0 ? side.refuted / side.known : 0.0; };
+  const Evidence& less = share(there) < share(back) ? there : back;
+  const Evidence& more = &less == &there ? back : there;
+  return share(less) < kNearlyNone && share(more) < kMost && less.known > kAlike * more.known;
+}
+
 Jury::Jury(const Known& cloud, const Known& reference)
     : cloud_(cloud),
       reference_(reference),
@@ -61,15 +68,6 @@ void Jury::judge(Hypothesis& one) const {
 double Jury::glance(const Pose& pose) const {
   return evidence_of(few_there_, pose, {reference_.fine, reference_.free}, tolerance_).sum() +
          evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
-}
-
-bool Hypothesis::is_refuted_by_one_only() const {
-  constexpr double kNearlyNone = 0.02, kMost = 0.2;
-  constexpr double kAlike = 0.5;  // of what one side tells of, for the other to know as well
-  const auto share = [](const Evidence& side) { return side.known > 0.0 ? side.refuted / side.known : 0.0; };
-  const Evidence& less = share(there) < share(back) ? there : back;
-  const Evidence& more = &less == &there ? back : there;
-  return share(less) < kNearlyNone && share(more) < kMost && less.known > kAlike * more.known;
 }
 
 double sigmas_worse(const Hypothesis& other, const Hypothesis& best) {

@@ -11,6 +11,8 @@ namespace ray::align {
 
 /// A cloud as alignment knows it.
 struct Known {
+  static constexpr double kLeastPoints = 5.0;  ///< of a patch
+
   Known(const Context& context, Surfaces gathered);
 
   Surfaces surfaces;

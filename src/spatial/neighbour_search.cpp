@@ -16,7 +16,7 @@ class NeighbourSearch::Impl {
  public:
   explicit Impl(const PointTree& tree) : walk_(tree), around_(tree) {}
 
-  /// Who asks for the nearest and then for more of them, at most points, gets the first from the second.
+  /// Who is wont to ask for the nearest of a place and then for more of them gets both from one search.
   std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach) {
     const bool again = more_.count > 0 && place == more_.place && reach == more_.reach;
     if (!again) more_.begin(place, count, reach);
