@@ -86,18 +86,6 @@ class Columns {
 
 }  // namespace
 
-Agreement::Counts& Agreement::Counts::operator+=(const Counts& more) {
-  same += more.same, other += more.other, empty += more.empty, unknown += more.unknown;
-  return *this;
-}
-
-Agreement& Agreement::operator+=(const Agreement& more) {
-  upright += more.upright;
-  others += more.others;
-  against += more.against;
-  return *this;
-}
-
 std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t most) {
   std::vector<JudgedPatch> judged;
   for (const Patch& patch : some_of(level.patches(), most))

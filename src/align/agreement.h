@@ -23,14 +23,12 @@ struct Agreement {
     double empty = 0.0;    ///< in space that was seen to be empty
     double unknown = 0.0;  ///< where the other cloud tells nothing
     [[nodiscard]] double known() const { return same + other + empty; }
-    Counts& operator+=(const Counts& more);
   };
   Counts upright, others;
   /// What speaks against the pose: patches in empty space, and clean upright ones beside a surface, but
   /// without those in the tenth of space where most of them are. There something may have changed; what is
   /// wrong with a pose is wrong everywhere.
   double against = 0.0;
-  Agreement& operator+=(const Agreement& more);
 };
 
 struct Observed {
