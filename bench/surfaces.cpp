@@ -85,7 +85,8 @@ int main(int argc, char** argv) {
   bench::run(
       building.command("raywrap -q " + building.big + " inwards 0.4 --full -o " + building.file(kHull)));
   split(building, "its full wrap", kHull);
-  for (const char* const words : {"upwards 0.01", "upwards 0.1", "upwards 1", "upwards 10", "downwards 1"})
+  for (const char* const words :
+       {"upwards 0.01", "upwards 0.1", "upwards 1", "upwards 10", "upwards 1000", "downwards 1"})
     sheet(open, words);
   for (const char* const words : {"inwards 0.2", "inwards 1", "inwards 5", "inwards 1000", "outwards 5"})
     ball(building, words);

@@ -28,10 +28,13 @@ class HullComplex {
   };
 
   /// Begins with a hull of four vertices, each face anticlockwise from outside when `a, b, c` is and `d` is
-  /// behind it. `vertices` is their number in all, that at infinity included.
+  /// behind it. `vertices` is their number in all, that at infinity included; at most 2^31.
   HullComplex(const Geometry& geometry, std::size_t vertices, std::array<Index, 4> first)
       : geometry_(geometry), fan_(vertices) {
     const auto [a, b, c, d] = first;
+    // As many as there can be: what is not used is never touched, and what grows would be copied.
+    faces_.reserve(2 * vertices);
+    seen_.reserve(2 * vertices);
     // Each face lacks one of the four.
     faces_ = {{{b, a, d}, {}}, {{c, b, d}, {}}, {{a, c, d}, {}}, {{a, b, c}, {}}};
     faces_[0].neighbours = {2, 1, 3};
@@ -88,6 +91,7 @@ class HullComplex {
   /// The faces, without those at infinity, by place.
   [[nodiscard]] std::vector<Mesh::Face> finite_faces() const {
     std::vector<Mesh::Face> faces;
+    faces.reserve(faces_.size());
     for (Index at = 0; at < faces_.size(); ++at)
       if (is_alive(at) && !is_infinite(at)) faces.push_back(faces_[at].vertices);
     return faces;
@@ -183,8 +187,8 @@ class HullComplex {
   const Geometry& geometry_;
   std::vector<Face> faces_;
   std::vector<Index> free_;
-  std::vector<std::uint64_t> seen_;  ///< 2 stamp + 1: seen by the point of that stamp
-  std::uint64_t stamp_ = 0;
+  std::vector<std::uint32_t> seen_;  ///< 2 stamp + 1: seen by the point of that stamp
+  std::uint32_t stamp_ = 0;
   std::vector<Index> removed_;
   std::vector<Index> created_;
   std::vector<Rim> rim_;

@@ -9,7 +9,7 @@
 namespace ray {
 namespace {
 
-constexpr int kCurveBits = 20;  // of each coordinate; what is nearer may come in any order
+constexpr int kCurveBits = kPlaneCurveBits / 2;  // of each coordinate; what is nearer may come in any order
 
 /// Place along the curve of Hilbert (Skilling, "Programming the Hilbert curve", 2004).
 template <std::size_t N>

@@ -16,6 +16,8 @@ namespace ray {
     const std::vector<std::array<std::uint32_t, 3>>& points);
 
 /// How far along the curve a point of such coordinates lies, which is told in steps of 2^11 along each axis.
+/// In the plane it has kPlaneCurveBits; the upper ones alone are the place in larger steps.
+inline constexpr int kPlaneCurveBits = 40;
 [[nodiscard]] std::uint64_t place_on_curve(const std::array<std::uint32_t, 2>& point);
 [[nodiscard]] std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& point);
 

@@ -1,5 +1,5 @@
 #include "edges.h"
-#include "face_tree.h"
+#include "embree_faces.h"
 #include "known_side.h"
 #include "orient.h"
 
@@ -68,7 +68,7 @@ struct MeshDistance::Impl {
         topology(count_topology(mesh, oriented.sides)),
         normals(pseudo_normals(mesh, oriented.sides)),
         known_side(mesh, oriented.sides, topology),
-        tree(mesh) {}
+        faces(mesh) {}
 
   [[nodiscard]] const Eigen::Vector3d& normal_at(const NearestFace& found) const {
     const FacePart part = found.nearest.part;
@@ -91,15 +91,15 @@ struct MeshDistance::Impl {
     // Something surely within the distance decides, whichever side it is on.
     const double within = distance * distance * (1.0 - 1e-14);
     const double perhaps_within = distance * distance * (1.0 + 1e-14);
-    NearestFace found = tree.find_within(point, near, perhaps_within, within);
+    NearestFace found = faces.find_within(point, near, perhaps_within, within);
     if (found.nearest.squared < within) {
       near = found.face;
       return distance < 0.0;
     }
     const int known = known_side.of(point);
-    if (found.face == FaceTree::kNoFace) {
+    if (found.face == EmbreeFaces::kNoFace) {
       if (known != 0) return known > 0;
-      found = tree.find(point, near);
+      found = faces.find(point, near);
     }
     near = found.face;
     return signed_distance(point, found, known) > distance;
@@ -110,7 +110,7 @@ struct MeshDistance::Impl {
   MeshTopology topology;
   PseudoNormals normals;
   KnownSide known_side;
-  FaceTree tree;
+  EmbreeFaces faces;
 };
 
 MeshDistance::MeshDistance(const Mesh& mesh) : impl_(std::make_unique<Impl>(weld(mesh))) {}
@@ -123,7 +123,7 @@ std::vector<double> MeshDistance::at(std::span<const Eigen::Vector3d> points) co
   distances.reserve(points.size());
   std::uint32_t near = 0;
   for (const Eigen::Vector3d& point : points) {
-    const NearestFace found = impl_->tree.find(point, near);
+    const NearestFace found = impl_->faces.find(point, near);
     near = found.face;
     distances.push_back(impl_->signed_distance(point, found, impl_->known_side.of(point)));
   }

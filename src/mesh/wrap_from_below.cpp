@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace ray {
@@ -16,8 +17,7 @@ namespace {
 /// An end where the probe is flat: raised by curvature/2 ρ², so that lower paraboloids become planes.
 struct LiftedEnd {
   PlanPoint point;
-  double z = 0.0;           ///< m, as it was
-  std::uint64_t curve = 0;  ///< place of the point on the curve of `insertion_order.h`
+  double z = 0.0;  ///< m, as it was
 };
 
 class Lift {
@@ -42,9 +42,9 @@ class Lift {
     return lifted;
   }
 
-  [[nodiscard]] Eigen::Vector3d vertex(const LiftedEnd& end) const {
-    const Eigen::Vector2d place = steps_.place(end.point.x, end.point.y);
-    return {place.x(), place.y(), end.z};
+  [[nodiscard]] Eigen::Vector3d vertex(const PlanPoint& point, double z) const {
+    const Eigen::Vector2d place = steps_.place(point.x, point.y);
+    return {place.x(), place.y(), z};
   }
 
  private:
@@ -107,55 +107,76 @@ ConvexCeiling ceiling_of(std::vector<PlanPoint> few, std::size_t sides) {
   return ceiling;
 }
 
-std::vector<LiftedEnd> below(const Context& context, RaySource& source, const Lift& lift,
-                             const ConvexCeiling& ceiling) {
-  std::vector<LiftedEnd> all;
+/// Place on the curve of `insertion_order.h`, to a 65536th of each side.
+std::uint32_t curve_of(const PlanPoint& point) {
+  const std::uint64_t place = place_on_curve(std::array<std::uint32_t, 2>{
+      static_cast<std::uint32_t>(point.x) * 2, static_cast<std::uint32_t>(point.y) * 2});
+  return static_cast<std::uint32_t>(place >> (kPlaneCurveBits - 32));
+}
+
+struct LiftedEnds {
+  std::vector<LiftedEnd> ends;
+  std::vector<std::uint32_t> curve;  ///< place of each
+};
+
+/// Of at most `bounded` ends.
+LiftedEnds below(const Context& context, RaySource& source, const Lift& lift, const ConvexCeiling& ceiling,
+                 std::uint64_t bounded) {
+  LiftedEnds all;
+  all.ends.reserve(bounded);  // what is not used is never touched, and what grows would be copied
+  all.curve.reserve(bounded);
   stream(
       context, source, nullptr,
       [&](RayCloud& rays) {
-        std::vector<LiftedEnd> ends;
+        LiftedEnds found;
         for (std::size_t i = 0; i < rays.size(); ++i) {
           if (rays.bounded[i] == 0) continue;
           const LiftedEnd end = lift(rays.ends[i]);
           const double most = ceiling.at(share(end.point.x), share(end.point.y));
           if (static_cast<double>(end.point.height) > most) continue;
-          ends.push_back(end);
-          ends.back().curve = place_on_curve(std::array<std::uint32_t, 2>{
-              static_cast<std::uint32_t>(end.point.x) * 2, static_cast<std::uint32_t>(end.point.y) * 2});
+          found.ends.push_back(end);
+          found.curve.push_back(curve_of(end.point));
         }
-        return ends;
+        return found;
       },
-      [&](RayCloud&, const std::vector<LiftedEnd>& ends) {
-        all.insert(all.end(), ends.begin(), ends.end());
+      [&](RayCloud&, const LiftedEnds& found) {
+        all.ends.insert(all.ends.end(), found.ends.begin(), found.ends.end());
+        all.curve.insert(all.curve.end(), found.curve.begin(), found.curve.end());
       });
   return all;
 }
 
+struct SortedEnds {
+  std::vector<PlanPoint> points;
+  std::vector<double> heights;  ///< m, as they were
+};
+
 /// Each near the one before, as the hull wants them; those at one place in the order of the rays.
-std::vector<LiftedEnd> along_curve(const Context& context, const std::vector<LiftedEnd>& ends) {
-  struct Key {
-    std::uint64_t curve;
-    std::uint32_t index;
-  };
-  std::vector<Key> keys(ends.size());
-  for (std::uint32_t i = 0; i < keys.size(); ++i)
-    keys[i] = {ends[i].curve, i};
-  parallel_sort(context, keys.begin(), keys.end(),
-                [](const Key& a, const Key& b) { return a.curve < b.curve; });
-  std::vector<LiftedEnd> sorted(ends.size());
+SortedEnds along_curve(const Context& context, const LiftedEnds& lifted) {
+  std::vector<std::uint64_t> keys(lifted.ends.size());  // the place above, the index below
   for (std::size_t i = 0; i < keys.size(); ++i)
-    sorted[i] = ends[keys[i].index];
+    keys[i] = std::uint64_t{lifted.curve[i]} << 32 | i;
+  parallel_sort(context, keys.begin(), keys.end(), std::less<>());
+  SortedEnds sorted;
+  sorted.points.reserve(keys.size() + 1);  // the hull adds one
+  sorted.heights.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    const LiftedEnd& end = lifted.ends[static_cast<std::uint32_t>(key)];
+    sorted.points.push_back(end.point);
+    sorted.heights.push_back(end.z);
+  }
   return sorted;
 }
 
-Mesh mesh_of(const LowerHull& hull, const std::vector<LiftedEnd>& ends, const Lift& lift) {
+Mesh mesh_of(const LowerHull& hull, const std::vector<double>& heights, const Lift& lift) {
   Mesh mesh;
   mesh.faces = hull.complex().finite_faces();
-  std::vector<std::uint32_t> number(ends.size(), 0);
+  mesh.vertices.reserve(heights.size());
+  std::vector<std::uint32_t> number(heights.size(), 0);
   for (Mesh::Face& face : mesh.faces) {
     for (std::uint32_t& vertex : face) {
       if (number[vertex] == 0) {
-        mesh.vertices.push_back(lift.vertex(ends[vertex]));
+        mesh.vertices.push_back(lift.vertex(hull.points()[vertex], heights[vertex]));
         number[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
       }
       vertex = number[vertex] - 1;
@@ -174,16 +195,12 @@ Wrap wrap_from_below(const Context& context, RaySource& source, const EndsSurvey
   std::vector<PlanPoint> lowest = lowest_of_cells(context, source, lift, sides);
   source.rewind();
   const ConvexCeiling ceiling = ceiling_of(std::move(lowest), 2 * sides);
-  const std::vector<LiftedEnd> ends = along_curve(context, below(context, source, lift, ceiling));
-  std::vector<PlanPoint> points;
-  points.reserve(ends.size() + 1);
-  for (const LiftedEnd& end : ends)
-    points.push_back(end.point);
-  const auto hull = LowerHull::make_along_curve(std::move(points));
+  SortedEnds ends = along_curve(context, below(context, source, lift, ceiling, survey.bounded));
+  const auto hull = LowerHull::make_along_curve(std::move(ends.points));
   if (hull == nullptr) throw Error(ErrorCode::no_data, "all ends are on one line of the map");
   check_cancelled(context);
   hull->insert_all();
-  return {.mesh = mesh_of(*hull, ends, lift), .stream = survey.stream, .bounded = survey.bounded};
+  return {.mesh = mesh_of(*hull, ends.heights, lift), .stream = survey.stream, .bounded = survey.bounded};
 }
 
 }  // namespace ray

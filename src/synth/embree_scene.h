@@ -1,5 +1,5 @@
 #pragma once
-/// Embree, and nothing else of the project knows it: finds the triangles near a ray. Which of them is hit,
+/// Embree, which nothing else of this room knows, finds the triangles near a ray. Which of them is hit,
 /// and where, is decided here in double precision, so that Embree's version, the processor's instructions and
 /// the shape of the tree do not show in a result.
 
