@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace ray {
 namespace {
@@ -11,10 +14,20 @@ namespace {
 /// Points in a tree of plan cells that halve in turn along x and y, with the lowest of each.
 class LowestTree {
  public:
-  explicit LowestTree(std::span<const Eigen::Vector3d> points) : points_(points), order_(points.size()) {
-    for (std::uint32_t i = 0; i < order_.size(); ++i)
-      order_[i] = i;
-    build(0, static_cast<std::uint32_t>(order_.size()));
+  LowestTree(const Context& context, std::span<const Eigen::Vector3d> points)
+      : points_(points), order_(points.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    add(0, static_cast<std::uint32_t>(order_.size()));
+    for (std::size_t level = 0; level < nodes_.size();) {
+      const std::size_t below = nodes_.size();
+      parallel_for(context, below - level, (below - level) / kShares + 1,
+                   [&](std::size_t first, std::size_t last) {
+                     for (std::size_t i = first; i < last; ++i)
+                       measure_and_halve(nodes_[level + i]);
+                   });
+      for (; level < below; ++level)
+        add_halves(level);
+    }
   }
 
   /// Whether some point is below the cone of p.
@@ -48,6 +61,7 @@ class LowestTree {
 
  private:
   static constexpr std::uint32_t kLeaf = 8;
+  static constexpr std::size_t kShares = 64;  // of the nodes of a level, for threads
   struct Node {
     Eigen::Vector2d low, high;
     double lowest = std::numeric_limits<double>::infinity();
@@ -55,31 +69,38 @@ class LowestTree {
     std::uint32_t first = 0, second = 0;
   };
 
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
-    const auto place = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
+    Node& node = nodes_.emplace_back();
     node.begin = begin;
     node.end = end;
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  void add_halves(std::size_t place) {
+    const auto [begin, end] = std::pair(nodes_[place].begin, nodes_[place].end);
+    if (end - begin <= kLeaf) return;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const std::uint32_t first = add(begin, middle);
+    const std::uint32_t second = add(middle, end);
+    nodes_[place].first = first;
+    nodes_[place].second = second;
+  }
+
+  /// Sorts the points of each half to one side.
+  void measure_and_halve(Node& node) {
     node.low.setConstant(std::numeric_limits<double>::infinity());
     node.high = -node.low;
-    for (std::uint32_t i = begin; i < end; ++i) {
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
       const Eigen::Vector3d& point = points_[order_[i]];
       node.low = node.low.cwiseMin(point.head<2>());
       node.high = node.high.cwiseMax(point.head<2>());
       node.lowest = std::min(node.lowest, point.z());
     }
-    if (end - begin > kLeaf) {
-      const int axis = node.high.x() - node.low.x() >= node.high.y() - node.low.y() ? 0 : 1;
-      const std::uint32_t middle = begin + (end - begin) / 2;
-      const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-      std::nth_element(at(begin), at(middle), at(end),
-                       [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
-      node.first = build(begin, middle);
-      node.second = build(middle, end);
-    }
-    nodes_[place] = node;
-    return place;
+    if (node.end - node.begin <= kLeaf) return;
+    const int axis = node.high.x() - node.low.x() >= node.high.y() - node.low.y() ? 0 : 1;
+    const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(node.begin), at(node.begin + (node.end - node.begin) / 2), at(node.end),
+                     [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
   }
 
   std::span<const Eigen::Vector3d> points_;
@@ -93,7 +114,7 @@ std::vector<std::uint8_t> cone_envelope(const Context& context, std::span<const 
                                         double gradient) {
   std::vector<std::uint8_t> ground(points.size(), 0);
   if (points.empty()) return ground;
-  const LowestTree tree(points);
+  const LowestTree tree(context, points);
   parallel_for(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;

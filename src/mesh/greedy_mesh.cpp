@@ -29,7 +29,7 @@ class GreedyMesh {
       const std::int64_t y = steps_.y(point.y());
       places.push_back({x, y, x * x + y * y});
     }
-    hull_ = LowerHull::make(std::move(places));
+    hull_ = LowerHull::make_along_curve(std::move(places));  // only its first three are used of the order
     if (hull_ == nullptr) return {};
     begin(begin_with);
     while (!queue_.is_empty()) {

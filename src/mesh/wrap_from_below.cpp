@@ -5,14 +5,20 @@
 #include "wrap_forms.h"
 
 #include <raycloud/core/error.h>
+#include <raycloud/exec/fresh_memory.h>
+#include <raycloud/exec/parallel.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 namespace ray {
 namespace {
+
+constexpr std::size_t kGrain = 1 << 16;
 
 /// An end where the probe is flat: raised by curvature/2 ρ², so that lower paraboloids become planes.
 struct LiftedEnd {
@@ -158,30 +164,48 @@ SortedEnds along_curve(const Context& context, const LiftedEnds& lifted) {
     keys[i] = std::uint64_t{lifted.curve[i]} << 32 | i;
   parallel_sort(context, keys.begin(), keys.end(), std::less<>());
   SortedEnds sorted;
-  sorted.points.reserve(keys.size() + 1);  // the hull adds one
-  sorted.heights.reserve(keys.size());
-  for (const std::uint64_t key : keys) {
-    const LiftedEnd& end = lifted.ends[static_cast<std::uint32_t>(key)];
-    sorted.points.push_back(end.point);
-    sorted.heights.push_back(end.z);
-  }
+  reserve_touched(context, sorted.points, keys.size() + 1);  // the hull adds one
+  sorted.points.resize(keys.size());
+  sorted.heights = touched_vector<double>(context, keys.size());
+  parallel_for(context, keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const LiftedEnd& from = lifted.ends[static_cast<std::uint32_t>(keys[i])];
+      sorted.points[i] = from.point;
+      sorted.heights[i] = from.z;
+    }
+  });
   return sorted;
 }
 
-Mesh mesh_of(const LowerHull& hull, const std::vector<double>& heights, const Lift& lift) {
+/// Of the ends, those that a face has; in their order.
+std::vector<std::uint8_t> touched_ends(const Context& context, const std::vector<Mesh::Face>& faces,
+                                       std::size_t ends) {
+  std::vector<std::uint8_t> touched(ends, 0);
+  parallel_for(context, faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      for (const std::uint32_t vertex : faces[f])
+        std::atomic_ref(touched[vertex]).store(1, std::memory_order_relaxed);
+  });
+  return touched;
+}
+
+Mesh mesh_of(const Context& context, const LowerHull& hull, const std::vector<double>& heights,
+             const Lift& lift) {
   Mesh mesh;
   mesh.faces = hull.complex().finite_faces();
-  mesh.vertices.reserve(heights.size());
-  std::vector<std::uint32_t> number(heights.size(), 0);
-  for (Mesh::Face& face : mesh.faces) {
-    for (std::uint32_t& vertex : face) {
-      if (number[vertex] == 0) {
-        mesh.vertices.push_back(lift.vertex(hull.points()[vertex], heights[vertex]));
-        number[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
-      }
-      vertex = number[vertex] - 1;
-    }
-  }
+  const std::vector<std::uint8_t> touched = touched_ends(context, mesh.faces, heights.size());
+  std::vector<std::uint32_t> number(heights.size());
+  std::exclusive_scan(touched.begin(), touched.end(), number.begin(), 0u);
+  mesh.vertices = touched_vector<Eigen::Vector3d>(context, number.back() + std::size_t{touched.back()});
+  parallel_for(context, heights.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (touched[i] != 0) mesh.vertices[number[i]] = lift.vertex(hull.points()[i], heights[i]);
+  });
+  parallel_for(context, mesh.faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      for (std::uint32_t& vertex : mesh.faces[f])
+        vertex = number[vertex];
+  });
   return mesh;
 }
 
@@ -200,7 +224,9 @@ Wrap wrap_from_below(const Context& context, RaySource& source, const EndsSurvey
   if (hull == nullptr) throw Error(ErrorCode::no_data, "all ends are on one line of the map");
   check_cancelled(context);
   hull->insert_all();
-  return {.mesh = mesh_of(*hull, ends.heights, lift), .stream = survey.stream, .bounded = survey.bounded};
+  return {.mesh = mesh_of(context, *hull, ends.heights, lift),
+          .stream = survey.stream,
+          .bounded = survey.bounded};
 }
 
 }  // namespace ray
