@@ -2,6 +2,7 @@
 #include <raycloud/mesh/cone_envelope.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,19 +31,62 @@ class LowestTree {
     }
   }
 
-  /// Whether some point is below the cone of p.
-  [[nodiscard]] bool has_below(const Eigen::Vector3d& p, double gradient) const {
+  /// Says 1 of each point that has none below its cone, 0 of the others. All points of a leaf look together
+  /// for the nodes that may have one.
+  [[nodiscard]] std::vector<std::uint8_t> without_below(const Context& context, double gradient) const {
+    std::vector<std::uint8_t> is_without(points_.size(), 1);
+    parallel_for(context, nodes_.size(), 256, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        if (nodes_[i].is_leaf()) judge(nodes_[i], gradient, is_without);
+    });
+    return is_without;
+  }
+
+ private:
+  static constexpr std::uint32_t kLeaf = 16;
+  static constexpr std::size_t kShares = 64;  // of the nodes of a level, for threads
+  struct Node {
+    Eigen::Vector2d low, high;
+    double lowest = std::numeric_limits<double>::infinity();
+    std::uint32_t begin = 0, end = 0;
+    std::uint32_t first = 0, second = 0;
+    [[nodiscard]] bool is_leaf() const { return end - begin <= kLeaf; }
+  };
+
+  /// Whether a point of a node may be below the cone of one at the height, so far away in plan. Rounding must
+  /// not hide one.
+  static bool may_be_below(const Node& node, double height, double squared, double gradient) {
+    const double room = height - node.lowest + 1e-14 * (std::abs(height) + std::abs(node.lowest));
+    return room >= 0.0 && gradient * gradient * squared * (1.0 - 1e-14) <= room * room;
+  }
+
+  bool has_below(const Node& node, const Eigen::Vector3d& p, double gradient) const {
+    const Eigen::Vector2d place = p.head<2>();
+    const double squared = (node.low - place).cwiseMax(place - node.high).cwiseMax(0.0).squaredNorm();
+    if (!may_be_below(node, p.z(), squared, gradient)) return false;
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+      const Eigen::Vector3d& q = points_[order_[i]];
+      if (q.z() < p.z() && q.z() + gradient * (q - p).head<2>().norm() < p.z()) return true;
+    }
+    return false;
+  }
+
+  void judge(const Node& own, double gradient, std::vector<std::uint8_t>& is_without) const {
+    std::array<std::uint32_t, kLeaf> open{};
+    std::size_t open_count = own.end - own.begin;
+    std::copy_n(order_.begin() + own.begin, open_count, open.begin());
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < open_count; ++i)
+      highest = std::max(highest, points_[open[i]].z());
+    const Eigen::Vector2d place = 0.5 * (own.low + own.high);
     std::uint32_t waiting[64];
     std::size_t count = 0;
     waiting[count++] = 0;
-    while (count > 0) {
+    while (count > 0 && open_count > 0) {
       const Node& node = nodes_[waiting[--count]];
-      const Eigen::Vector2d place = p.head<2>();
-      const double squared = (node.low - place).cwiseMax(place - node.high).cwiseMax(0.0).squaredNorm();
-      // Rounding must not hide a point.
-      const double room = p.z() - node.lowest + 1e-14 * (std::abs(p.z()) + std::abs(node.lowest));
-      if (room < 0.0 || gradient * gradient * squared * (1.0 - 1e-14) > room * room) continue;
-      if (node.end - node.begin > kLeaf) {
+      const double squared = (node.low - own.high).cwiseMax(own.low - node.high).cwiseMax(0.0).squaredNorm();
+      if (!may_be_below(node, highest, squared, gradient)) continue;
+      if (!node.is_leaf()) {
         // The half that is nearer is looked at first.
         const Node& first = nodes_[node.first];
         const bool in_first =
@@ -51,23 +95,16 @@ class LowestTree {
         waiting[count++] = in_first ? node.first : node.second;
         continue;
       }
-      for (std::uint32_t i = node.begin; i < node.end; ++i) {
-        const Eigen::Vector3d& q = points_[order_[i]];
-        if (q.z() < p.z() && q.z() + gradient * (q - p).head<2>().norm() < p.z()) return true;
+      for (std::size_t i = 0; i < open_count;) {
+        if (has_below(node, points_[open[i]], gradient)) {
+          is_without[open[i]] = 0;
+          open[i] = open[--open_count];
+        } else {
+          ++i;
+        }
       }
     }
-    return false;
   }
-
- private:
-  static constexpr std::uint32_t kLeaf = 8;
-  static constexpr std::size_t kShares = 64;  // of the nodes of a level, for threads
-  struct Node {
-    Eigen::Vector2d low, high;
-    double lowest = std::numeric_limits<double>::infinity();
-    std::uint32_t begin = 0, end = 0;
-    std::uint32_t first = 0, second = 0;
-  };
 
   std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
     Node& node = nodes_.emplace_back();
@@ -78,7 +115,7 @@ class LowestTree {
 
   void add_halves(std::size_t place) {
     const auto [begin, end] = std::pair(nodes_[place].begin, nodes_[place].end);
-    if (end - begin <= kLeaf) return;
+    if (nodes_[place].is_leaf()) return;
     const std::uint32_t middle = begin + (end - begin) / 2;
     const std::uint32_t first = add(begin, middle);
     const std::uint32_t second = add(middle, end);
@@ -96,7 +133,7 @@ class LowestTree {
       node.high = node.high.cwiseMax(point.head<2>());
       node.lowest = std::min(node.lowest, point.z());
     }
-    if (node.end - node.begin <= kLeaf) return;
+    if (node.is_leaf()) return;
     const int axis = node.high.x() - node.low.x() >= node.high.y() - node.low.y() ? 0 : 1;
     const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(node.begin), at(node.begin + (node.end - node.begin) / 2), at(node.end),
@@ -112,14 +149,8 @@ class LowestTree {
 
 std::vector<std::uint8_t> cone_envelope(const Context& context, std::span<const Eigen::Vector3d> points,
                                         double gradient) {
-  std::vector<std::uint8_t> ground(points.size(), 0);
-  if (points.empty()) return ground;
-  const LowestTree tree(context, points);
-  parallel_for(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      ground[i] = tree.has_below(points[i], gradient) ? 0 : 1;
-  });
-  return ground;
+  if (points.empty()) return {};
+  return LowestTree(context, points).without_below(context, gradient);
 }
 
 }  // namespace ray

@@ -135,8 +135,13 @@ class GreedyMesh {
 
   /// Moves the points over a face to loose_, but for one.
   void take_from(Index face, Index but_for) {
-    for (Index point = waiting_[face].first; point != kDone; point = next_[point])
-      if (point != but_for) loose_.push_back(point);
+    for (Index point = waiting_[face].first; point != kDone; point = next_[point]) {
+      if (point == but_for) continue;
+      // distribute() will look at all of them.
+      __builtin_prefetch(&hull_->points()[point]);
+      __builtin_prefetch(&points_[point].z());
+      loose_.push_back(point);
+    }
     waiting_[face] = {kDone, ++stamp_};
   }
 
