@@ -22,8 +22,8 @@ void count(std::uint16_t& counter) {
 }
 
 /// Parts hits in order of time at their longest pauses.
-void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evidence& evidence) {
-  constexpr std::size_t kPauses = Evidence::kEpisodes - 1;
+void part_hits(std::span<const std::uint16_t> ticks, double look_ticks, HitEpisodes& hits) {
+  constexpr std::size_t kPauses = HitEpisodes::kEpisodes - 1;
   std::array<std::size_t, kPauses> after{};  // the hits after which there is a pause, the longest pause first
   std::size_t pauses = 0;
   const auto length = [&](std::size_t i) { return ticks[i + 1] - ticks[i]; };
@@ -39,16 +39,25 @@ void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evide
     after[at] = i;
   }
   std::sort(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(pauses));
-  evidence.begins.fill(ticks.back());
-  evidence.ends.fill(ticks.back());
-  evidence.begins[0] = ticks.front();
+  hits.begins.fill(ticks.back());
+  hits.ends.fill(ticks.back());
+  hits.begins[0] = ticks.front();
   for (std::size_t k = 0; k < pauses; ++k) {
-    evidence.ends[k] = ticks[after[k]];
-    evidence.begins[k + 1] = ticks[after[k] + 1];
+    hits.ends[k] = ticks[after[k]];
+    hits.begins[k + 1] = ticks[after[k] + 1];
   }
 }
 
 }  // namespace
+
+HitEpisodes episodes_of(std::vector<std::uint16_t>& ticks, double look_ticks) {
+  HitEpisodes hits;
+  if (ticks.empty()) return hits;
+  std::sort(ticks.begin(), ticks.end());
+  hits.hits = static_cast<std::uint16_t>(std::min<std::size_t>(ticks.size(), kMostCounted));
+  part_hits(ticks, look_ticks, hits);
+  return hits;
+}
 
 void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale) {
   std::vector<Further> further;
@@ -84,9 +93,7 @@ void HitTimes::find_episodes(const Context& context, double look_ticks, std::spa
       ticks.assign(first, first + std::min<std::ptrdiff_t>(count, kFirst));
       for (; further != further_.end() && further->slot == slot; ++further)
         ticks.push_back(further->tick);
-      std::sort(ticks.begin(), ticks.end());
-      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count, kMostCounted));
-      set_episodes(ticks, look_ticks, evidence[slot]);
+      static_cast<HitEpisodes&>(evidence[slot]) = episodes_of(ticks, look_ticks);
     }
   });
 }
