@@ -12,10 +12,9 @@ Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::si
 }
 
 EllipsoidMaker::EllipsoidMaker(const Context& context, std::vector<SeenPoint>&& points)
-    : ellipsoids_(std::make_unique<EllipsoidTree>(context, points.size(),
-                                                  [&](std::size_t i) { return points[i].end; })),
-      points_(context, points) {
+    : points_(context, points) {
   points = std::vector<SeenPoint>();
+  ellipsoids_ = std::make_unique<EllipsoidTree>(context, points_);
 }
 
 std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, double reach, double range_noise,

@@ -33,8 +33,8 @@ class EllipsoidMaker {
                                                     OwnHits* hits = nullptr);
 
  private:
-  std::unique_ptr<EllipsoidTree> ellipsoids_;
   PointTree points_;
+  std::unique_ptr<EllipsoidTree> ellipsoids_;
 };
 
 struct CloudEllipsoids {

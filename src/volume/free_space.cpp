@@ -53,8 +53,15 @@ void part_hits(std::span<const std::uint16_t> ticks, double look_ticks, HitEpiso
 HitEpisodes episodes_of(std::vector<std::uint16_t>& ticks, double look_ticks) {
   HitEpisodes hits;
   if (ticks.empty()) return hits;
-  std::sort(ticks.begin(), ticks.end());
   hits.hits = static_cast<std::uint16_t>(std::min<std::size_t>(ticks.size(), kMostCounted));
+  const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
+  if (*last - *first <= look_ticks) {
+    hits.begins.fill(*last);
+    hits.begins[0] = *first;
+    hits.ends.fill(*last);
+    return hits;
+  }
+  std::sort(ticks.begin(), ticks.end());
   part_hits(ticks, look_ticks, hits);
   return hits;
 }
@@ -100,12 +107,18 @@ void HitTimes::find_episodes(const Context& context, double look_ticks, std::spa
 
 void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
                 const TimeScale& scale, std::span<Evidence> evidence) {
-  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> slots, late;
   for (const std::uint32_t i : coherent_order(rays, false)) {
-    tree.near_line(rays.starts[i], rays.ends[i], slots);
-    if (slots.empty()) continue;
+    // What a bounded ray leaves so near its end proves nothing.
+    const double beyond = rays.bounded[i] != 0 ? rule.guard.beyond : 0.0;
+    tree.near_line(rays.starts[i], rays.ends[i], beyond, slots, late);
+    for (const std::uint32_t slot : late)
+      __builtin_prefetch(&evidence[slot].crossings, 1);
     for (const std::uint32_t slot : slots)
       __builtin_prefetch(&evidence[slot], 1);
+    for (const std::uint32_t slot : late)
+      count(evidence[slot].crossings);
+    if (slots.empty()) continue;
     const RayPath path(rays, i);
     const std::uint16_t look = look_of(rays.times[i], path.way(), rule.look_time);
     const std::uint16_t tick = scale.tick(rays.times[i]);

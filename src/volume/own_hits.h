@@ -9,6 +9,7 @@
 #include <raycloud/volume/free_space.h>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ray {
@@ -27,7 +28,10 @@ class OwnHits {
   /// The hits of the ellipsoid around the point at `place`. Thread-safe for different slots.
   void find(NeighbourSearch& search, std::size_t place, const Ellipsoid& ellipsoid, std::uint32_t slot);
   /// By slot.
-  [[nodiscard]] std::vector<HitEpisodes> take() { return std::move(hits_); }
+  [[nodiscard]] std::vector<HitEpisodes> take() {
+    ticks_ = std::vector<std::uint16_t>();
+    return std::move(hits_);
+  }
 
  private:
   std::vector<std::uint16_t> ticks_;  ///< by place

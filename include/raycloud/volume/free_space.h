@@ -62,7 +62,7 @@ struct HitEpisodes {
   }
   friend bool operator==(const HitEpisodes&, const HitEpisodes&) = default;
 };
-/// Of hits at these times, which it sorts. Pauses are longer than `look_ticks`.
+/// Of hits at these times, which it may sort. Pauses are longer than `look_ticks`.
 [[nodiscard]] HitEpisodes episodes_of(std::vector<std::uint16_t>& ticks, double look_ticks);
 
 /// Rays counted by where they stand to the times at which the ellipsoid was hit. Counts end at 60 000. 42
