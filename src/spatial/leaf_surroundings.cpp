@@ -61,6 +61,7 @@ bool LeafSurroundings::gather(const TreeWalk& walk, double reach) {
     }
   }
   points_.pad();
+  box_ = box;
   solved_count_ = 0;
   leaf_ = leaf;
   return true;
@@ -181,6 +182,40 @@ std::optional<std::span<const Neighbour>> LeafSurroundings::nearest(std::size_t 
     solved_[self] = static_cast<float>(std::sqrt(furthest2)) * 1.00001F;
   }
   return result;
+}
+
+double LeafSurroundings::furthest(const Eigen::Vector3d& middle, const Eigen::Vector3d& half) const {
+  double furthest2 = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const double beyond =
+        std::abs(middle[a] - box_.middle[axis]) + half[a] - static_cast<double>(box_.half[axis]);
+    furthest2 += std::max(beyond, 0.0) * std::max(beyond, 0.0);
+  }
+  return std::sqrt(furthest2) * (1.0 + 1e-6);
+}
+
+PlacesInside LeafSurroundings::inside(const SearchedBody& body) {
+  constexpr float kRounding = 1e-6F;  // of the largest product, at most the trace times the squared distance
+  SieveBody sought;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    sought.centre[axis] =
+        static_cast<float>(body.centre[static_cast<Eigen::Index>(axis)] - box_.middle[axis]);
+  std::size_t entry = 0;
+  for (int row = 0; row < 3; ++row)
+    for (int column = row; column < 3; ++column)
+      sought.shape[entry++] = static_cast<float>(body.shape(row, column));
+  const auto trace = static_cast<float>(body.shape.trace());
+  sought.rounding = kRounding * trace;
+  // A point that is rounded by so much of the body's least extent.
+  const float moved = slack_ * std::sqrt(trace);
+  const float doubt = kRounding + 2.5F * moved + moved * moved;
+  sought.most = 1.0F + doubt;
+  sieve_body(points_, sought, near_);
+  std::size_t surely = 0, perhaps = inside_.size();
+  for (std::size_t i = 0; i < near_.size; ++i)
+    inside_[near_.distance2[i] < 1.0F - doubt ? surely++ : --perhaps] = near_.place[i];
+  return {{inside_.data(), surely}, {inside_.data() + perhaps, inside_.size() - perhaps}};
 }
 
 /// Of those found, a little more than the nearest stay: those that may be.

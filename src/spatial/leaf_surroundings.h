@@ -34,6 +34,10 @@ class LeafSurroundings {
   /// Precondition: has(place).
   std::optional<std::span<const Neighbour>> nearest(std::size_t place, std::size_t count, double reach,
                                                     const Eigen::Vector3d* side);
+  /// How far a box (m) reaches from that of the leaf at most. Precondition: something is gathered.
+  [[nodiscard]] double furthest(const Eigen::Vector3d& middle, const Eigen::Vector3d& half) const;
+  /// As NeighbourSearch has it. Precondition: the box of the body is within reach().
+  [[nodiscard]] PlacesInside inside(const SearchedBody& body);
   /// After a search that came to nothing: no point further than that (m², squared) is among the nearest.
   [[nodiscard]] double bound2() const { return bound2_; }
 
@@ -56,6 +60,7 @@ class LeafSurroundings {
   const PointTree& tree_;
   TreeWalk::Leaf leaf_;
   double reach_ = 0.0;
+  SieveBox box_;            // of the leaf
   float slack_ = 0.0F;      // by which a distance may be wrong
   SievePoints points_;      // what was gathered, the points of the leaf first
   bool has_sides_ = false;  // with the directions to their sensors
@@ -66,6 +71,7 @@ class LeafSurroundings {
   // Of the search under way.
   SievedPoints near_;
   std::array<Neighbour, kSieveRoom> found_{};
+  std::array<std::uint32_t, kSieveRoom> inside_{};  // those surely there in front, those perhaps behind
 };
 
 }  // namespace ray

@@ -32,6 +32,18 @@ class NeighbourSearch::Impl {
     return search(place, count, reach, &side);
   }
 
+  PlacesInside inside(std::size_t place, const SearchedBody& body) {
+    more_.count = 0;
+    go_to(place);
+    const Eigen::Vector3d half = half_extent(body.shape);
+    if (around_.has(place)) {
+      const double furthest = around_.furthest(body.centre, half);
+      if (furthest <= around_.reach() || widen(furthest)) return around_.inside(body);
+    }
+    walk_.in_box(body.centre - half, body.centre + half, in_box_);
+    return {{}, in_box_};
+  }
+
   Leaf leaf_of(std::size_t place) {
     go_to(place);
     return {walk_.leaf().first, walk_.leaf().first + walk_.leaf().count};
@@ -121,6 +133,16 @@ class NeighbourSearch::Impl {
     return std::sqrt(furthest2);
   }
 
+  /// Half the box of a body, m, and a little more, for rounding: by the diagonal of the inverse.
+  static Eigen::Vector3d half_extent(const Eigen::Matrix3d& shape) {
+    constexpr double kRoom = 1.0 + 1e-5;
+    const double xx = shape(0, 0), xy = shape(0, 1), xz = shape(0, 2), yy = shape(1, 1), yz = shape(1, 2),
+                 zz = shape(2, 2);
+    const double x2 = yy * zz - yz * yz, y2 = xx * zz - xz * xz, z2 = xx * yy - xy * xy;
+    const double det = xx * x2 - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    return kRoom * (Eigen::Vector3d(x2, y2, z2) / det).cwiseMax(0.0).cwiseSqrt();
+  }
+
   bool go_to(std::size_t place) {
     if (!walk_.go_to(place)) return false;
     around_.forget();
@@ -171,6 +193,7 @@ class NeighbourSearch::Impl {
   Furthest furthest_, furthest_before_;
   More more_;
   std::array<Neighbour, kMost> nearest_;
+  std::vector<std::uint32_t> in_box_;
 };
 
 NeighbourSearch::NeighbourSearch(const PointTree& tree) : tree_(tree), impl_(std::make_unique<Impl>(tree)) {}
@@ -183,6 +206,10 @@ std::span<const Neighbour> NeighbourSearch::nearest(std::size_t place, std::size
 std::span<const Neighbour> NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
                                                            const Eigen::Vector3d& normal) {
   return impl_->nearest_facing(place, count, reach, normal);
+}
+
+PlacesInside NeighbourSearch::inside(std::size_t place, const SearchedBody& body) {
+  return impl_->inside(place, body);
 }
 
 NeighbourSearch::Leaf NeighbourSearch::leaf_of(std::size_t place) {

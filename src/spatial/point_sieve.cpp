@@ -66,6 +66,23 @@ bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPo
   return is_doubtful;
 }
 
+void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
+  const auto [x, y, z] = body.centre;
+  const auto [xx, xy, xz, yy, yz, zz] = body.shape;
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float dx = points.x[i] - x, dy = points.y[i] - y, dz = points.z[i] - z;
+    const float value = dx * (xx * dx + xy * dy + xz * dz) + dy * (xy * dx + yy * dy + yz * dz) +
+                        dz * (xz * dx + yz * dy + zz * dz);
+    const float wrong = body.rounding * (dx * dx + dy * dy + dz * dz);
+    near.distance2[size] = value + wrong;
+    near.place[size] = points.place[i];
+    size += value - wrong <= body.most ? 1 : 0;
+  }
+  near.size = size;
+  end_list(near);
+}
+
 std::size_t sieve_count(const SievedPoints& near, float distance2) {
   std::int32_t count = 0;
   for (std::size_t i = 0; i < near.size; ++i)

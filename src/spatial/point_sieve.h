@@ -57,11 +57,22 @@ struct SieveSphere {
   float doubt = 0.0F;
 };
 
+/// Of an ellipsoid. What it says of a point is wrong by at most `rounding` times its squared distance from
+/// the centre, and as much more as `most` is above 1.
+struct SieveBody {
+  std::array<float, 3> centre{};
+  std::array<float, 6> shape{};  ///< xx, xy, xz, yy, yz, zz
+  float rounding = 0.0F;
+  float most = 1.0F;
+};
+
 /// Appends the points of the source near the box, relative to its middle, to the others. Reads up to 7 more
 /// points. Precondition: there is room for all of the source and seven more.
 void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& points);
 /// The points within the sphere, and of its side; true if for some the side is in doubt.
 [[nodiscard]] bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near);
+/// The points that may be in the body; in place of a distance, the most that it may say of the point.
+void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near);
 /// The number of points no further.
 [[nodiscard]] std::size_t sieve_count(const SievedPoints& near, float distance2);
 /// Leaves the points no further.
@@ -75,6 +86,7 @@ void sieve_further(SievedPoints& near, float distance2);
 namespace plain {
 void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& points);
 [[nodiscard]] bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near);
+void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near);
 [[nodiscard]] std::size_t sieve_count(const SievedPoints& near, float distance2);
 void sieve_further(SievedPoints& near, float distance2);
 [[nodiscard]] float sieve_least_sum(const SievePoints& points, const std::array<float, 3>& middle,

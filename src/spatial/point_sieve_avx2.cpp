@@ -120,6 +120,32 @@ RAY_AVX2 bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere,
   return _mm256_movemask_ps(doubtful) != 0;
 }
 
+RAY_AVX2 void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
+  const __m256 x = _mm256_set1_ps(body.centre[0]), y = _mm256_set1_ps(body.centre[1]),
+               z = _mm256_set1_ps(body.centre[2]);
+  const __m256 xx = _mm256_set1_ps(body.shape[0]), xy = _mm256_set1_ps(body.shape[1]),
+               xz = _mm256_set1_ps(body.shape[2]), yy = _mm256_set1_ps(body.shape[3]),
+               yz = _mm256_set1_ps(body.shape[4]), zz = _mm256_set1_ps(body.shape[5]);
+  const __m256 rounding = _mm256_set1_ps(body.rounding), most = _mm256_set1_ps(body.most);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < points.size; i += 8) {
+    const __m256 dx = _mm256_sub_ps(_mm256_load_ps(&points.x[i]), x),
+                 dy = _mm256_sub_ps(_mm256_load_ps(&points.y[i]), y),
+                 dz = _mm256_sub_ps(_mm256_load_ps(&points.z[i]), z);
+    const __m256 value = dot(dx, dy, dz, dot(xx, xy, xz, dx, dy, dz), dot(xy, yy, yz, dx, dy, dz),
+                             dot(xz, yz, zz, dx, dy, dz));
+    const __m256 wrong = _mm256_mul_ps(rounding, dot(dx, dy, dz, dx, dy, dz));
+    const int bits = _mm256_movemask_ps(_mm256_cmp_ps(_mm256_sub_ps(value, wrong), most, _CMP_LE_OQ));
+    if (bits == 0) continue;
+    const __m256i order = order_of(bits);
+    put(&near.distance2[size], _mm256_add_ps(value, wrong), order);
+    put(&near.place[size], load(&points.place[i]), order);
+    size += count_of(bits);
+  }
+  near.size = size;
+  end_list(near);
+}
+
 RAY_AVX2 std::size_t sieve_count(const SievedPoints& near, float distance2) {
   const __m256 most = _mm256_set1_ps(distance2);
   std::size_t count = 0;
@@ -174,6 +200,9 @@ bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPo
   return sphere.has_side ? avx2::sieve_sphere<true>(points, sphere, near)
                          : avx2::sieve_sphere<false>(points, sphere, near);
 }
+void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
+  avx2::kIsHere ? avx2::sieve_body(points, body, near) : plain::sieve_body(points, body, near);
+}
 std::size_t sieve_count(const SievedPoints& near, float distance2) {
   return avx2::kIsHere ? avx2::sieve_count(near, distance2) : plain::sieve_count(near, distance2);
 }
@@ -197,6 +226,9 @@ void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& poin
 }
 bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near) {
   return plain::sieve_sphere(points, sphere, near);
+}
+void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
+  plain::sieve_body(points, body, near);
 }
 std::size_t sieve_count(const SievedPoints& near, float distance2) {
   return plain::sieve_count(near, distance2);

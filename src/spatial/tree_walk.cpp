@@ -221,4 +221,32 @@ std::span<const Neighbour> TreeWalk::nearest(std::size_t place, std::size_t coun
   return {found_.data(), count_};
 }
 
+void TreeWalk::in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                      std::vector<std::uint32_t>& places) {
+  places.clear();
+  const auto is_apart = [&](const PointTree::Pair& pair, std::size_t side) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (pair.min[axis][side] > max[a] || pair.max[axis][side] < min[a]) return true;
+    }
+    return false;
+  };
+  open_[0] = {1, 0.0};
+  for (std::size_t open = 1; open > 0;) {
+    const std::uint32_t node = open_[--open].node;
+    const PointTree::Pair& pair = tree_.pairs_[node / 2];
+    const std::size_t side = node % 2;
+    if (is_apart(pair, side)) continue;
+    if (const std::uint32_t parts = pair.parts[side]; parts != 0) {
+      open_[open++] = {2 * parts, 0.0};
+      open_[open++] = {2 * parts + 1, 0.0};
+      continue;
+    }
+    for (std::uint32_t place = pair.first[side]; place < pair.first[side] + pair.count[side]; ++place) {
+      const Eigen::Array3d point = tree_.point(place);
+      if ((point >= min.array()).all() && (point <= max.array()).all()) places.push_back(place);
+    }
+  }
+}
+
 }  // namespace ray

@@ -39,6 +39,9 @@ class TreeWalk {
   std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double within2,
                                      const Eigen::Vector3d* side);
 
+  /// All places in the box.
+  void in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max, std::vector<std::uint32_t>& places);
+
  private:
   struct Open {
     std::uint32_t node;

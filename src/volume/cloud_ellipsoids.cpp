@@ -12,18 +12,22 @@ Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::si
 }
 
 EllipsoidMaker::EllipsoidMaker(const Context& context, std::vector<SeenPoint>&& points)
-    : ellipsoids_(std::make_unique<EllipsoidTree>(context, points.size(),
-                                                  [&](std::size_t i) { return points[i].end; })),
-      points_(context, points) {
+    : points_(context, points) {
   points = std::vector<SeenPoint>();
+  ellipsoids_ = std::make_unique<EllipsoidTree>(context, points_);
 }
 
-std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, double reach,
-                                                    double range_noise) {
+std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, double reach, double range_noise,
+                                                    OwnHits* hits) {
   parallel_for(context, points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(points_);
-    for (std::size_t place = begin; place < end; ++place)
-      ellipsoids_->set(points_.index(place), ellipsoid_at(search, points_, place, reach, range_noise));
+    for (std::size_t place = begin; place < end; ++place) {
+      const std::uint32_t i = points_.index(place);
+      ellipsoids_->set(i, ellipsoid_at(search, points_, place, reach, range_noise));
+      if (hits == nullptr) continue;
+      const std::uint32_t slot = ellipsoids_->slot(i);
+      hits->find(search, place, ellipsoids_->at_slot(slot), slot);
+    }
   });
   ellipsoids_->close(context);
   return std::move(ellipsoids_);

@@ -1,5 +1,7 @@
 /// The searches of EllipsoidTree: which ellipsoids a line or a point may meet.
 
+#include "ellipsoid_lanes.h"
+
 #include <raycloud/volume/ellipsoid_tree.h>
 
 #include <algorithm>
@@ -13,11 +15,6 @@
 
 namespace ray {
 namespace {
-
-/// A form in single precision is wrong by so much of the largest product in it, which is at most the trace of
-/// the shape times the squared lengths.
-constexpr float kRounding = 1e-6F;
-constexpr float kMargin = 1.01F;
 
 /// Numbers of eight at once; plain loops over so few are not made parallel by compilers.
 using Lanes = Eigen::Array<float, 8, 1>;
@@ -92,36 +89,41 @@ std::pair<double, double> clipped(const Eigen::Vector3d& start, const Eigen::Vec
 struct EllipsoidTree::Line {
   Eigen::Vector3d start;
   Eigen::Vector3d direction;  // unit
-  double length;
-  std::array<float, 3> d;
+  double length, late;        // m
 };
 
 void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                               std::vector<std::uint32_t>& slots) const {
+  std::vector<std::uint32_t> none;
+  near_line(start, end, 0.0, slots, none);
+}
+
+void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3d& end, double beyond,
+                              std::vector<std::uint32_t>& slots, std::vector<std::uint32_t>& late) const {
   slots.clear();
+  late.clear();
   if (levels_.empty()) return;
   const Eigen::Vector3d way = end - start;
   const auto [first, last] = clipped(start, way, min_, max_);
   const double length = way.norm();
   if (!(first <= last) || !(length > 0.0)) return;
-  Line line{start, way / length, length, {}};
-  std::array<float, 3> from, inverse;
+  const Line line{start, way / length, length, length - beyond};
+  LineInBoxes in_boxes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
     constexpr double kLeast = 1e-12;
     const double d = line.direction[a];
-    line.d[axis] = static_cast<float>(d);
-    from[axis] = static_cast<float>(start[a] + first * way[a] - origin_[a]);
-    inverse[axis] = static_cast<float>(1.0 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d));
+    in_boxes.from[axis] = static_cast<float>(start[a] + first * way[a] - origin_[a]);
+    in_boxes.inverse[axis] = static_cast<float>(1.0 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d));
   }
-  const auto reach = static_cast<float>((last - first) * length * (1.0 + 1e-6) + slack_);
+  in_boxes.reach = static_cast<float>((last - first) * length * (1.0 + 1e-6) + slack_);
 
   // Packs are met a little later, when they have come from memory.
   std::array<std::uint32_t, 32> met;
   std::size_t waiting = 0;
   const auto meet_all = [&] {
     for (std::size_t i = 0; i < waiting; ++i)
-      meet_pack(met[i], line, slots);
+      meet_pack(met[i], line, slots, late);
     waiting = 0;
   };
   OpenParts open;
@@ -129,66 +131,42 @@ void EllipsoidTree::near_line(const Eigen::Vector3d& start, const Eigen::Vector3
   while (!open.empty()) {
     const auto [level, number] = open.pop();
     const Boxes& boxes = levels_[level][number];
-    Lanes enters = Lanes::Zero(), leaves = Lanes::Constant(reach);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool up = inverse[axis] > 0.0F;
-      const ConstLanes near(up ? boxes.min[axis].data() : boxes.max[axis].data());
-      const ConstLanes far(up ? boxes.max[axis].data() : boxes.min[axis].data());
-      enters = enters.max((near - from[axis]) * inverse[axis]);
-      leaves = leaves.min((far - from[axis]) * inverse[axis]);
-    }
-    each_bit(at_least_zero(leaves - enters), [&, level = level, number = number](std::size_t i) {
-      const std::size_t part = kParts * number + i;
-      if (level > 0) {
-        open.push(level - 1, part);
-        fetch(levels_[level - 1][part]);
-      } else {
-        if (waiting == met.size()) meet_all();
-        met[waiting++] = static_cast<std::uint32_t>(part);
-        fetch(packs_[part]);
-      }
-    });
+    each_bit(boxes_on_line(boxes.min, boxes.max, in_boxes),
+             [&, level = level, number = number](std::size_t i) {
+               const std::size_t part = kParts * number + i;
+               if (level > 0) {
+                 open.push(level - 1, part);
+                 fetch(levels_[level - 1][part]);
+               } else {
+                 if (waiting == met.size()) meet_all();
+                 met[waiting++] = static_cast<std::uint32_t>(part);
+                 fetch(packs_[part]);
+               }
+             });
   }
   meet_all();
 }
 
-void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::uint32_t>& slots) const {
+void EllipsoidTree::meet_pack(std::size_t p, const Line& line, std::vector<std::uint32_t>& slots,
+                              std::vector<std::uint32_t>& late) const {
   const Pack& pack = packs_[p];
   // From the point of the line nearest to the anchor, so that single precision will do.
   const Eigen::Vector3d to_anchor = pack.anchor - line.start;
   const double middle = line.direction.dot(to_anchor);
-  const Eigen::Vector3d nearest = middle * line.direction - to_anchor;
-  const auto px = static_cast<float>(nearest.x()), py = static_cast<float>(nearest.y()),
-             pz = static_cast<float>(nearest.z());
-  const auto start = static_cast<float>(-middle), end = static_cast<float>(line.length - middle);
-  const auto [dx, dy, dz] = line.d;
-  const ConstLanes xx(pack.shape[0].data()), xy(pack.shape[1].data()), xz(pack.shape[2].data()),
-      yy(pack.shape[3].data()), yz(pack.shape[4].data()), zz(pack.shape[5].data());
-  const Lanes wx = px - ConstLanes(pack.centre[0].data()), wy = py - ConstLanes(pack.centre[1].data()),
-              wz = pz - ConstLanes(pack.centre[2].data());
-  const Lanes sx = xx * dx + xy * dy + xz * dz, sy = xy * dx + yy * dy + yz * dz,
-              sz = xz * dx + yz * dy + zz * dz;
-  const Lanes from2 = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
-                      wz * (xz * wx + yz * wy + zz * wz);
-  const Lanes way2 = dx * sx + dy * sy + dz * sz;
-  const Lanes along = wx * sx + wy * sy + wz * sz;
-  const Lanes rounding = 2.0F * kRounding * (xx + yy + zz) * ((wx * wx + wy * wy + wz * wz) * way2 + from2);
-  const Lanes half2 = way2 - from2 * way2 + along * along;
-  std::uint32_t met = at_least_zero(half2 + rounding + (kMargin - 1.0F) * way2);
-  if (met == 0) return;
-  // In units of way2 from the middle of the chord, whose half squared is half2. A line that surely begins
-  // or ends inside, or does not reach the middle, does not cross.
-  const Lanes w = (wx * wx + wy * wy + wz * wz).sqrt();
-  const Lanes unit = kRounding * (xx + yy + zz);
-  const Lanes inside = half2 - rounding - unit;
-  const auto crosses = [&](float place, float side) {
-    const Lanes surely = side * (place * way2 + along) + unit * (std::abs(place) + w);
-    return at_least_zero(surely) & at_least_zero(surely * surely - inside);
-  };
-  met &= crosses(start, -1.0F) & crosses(end, 1.0F);
-  if (met == 0) return;
+  const Eigen::Vector3f nearest = (middle * line.direction - to_anchor).cast<float>();
+  const Eigen::Vector3f direction = line.direction.cast<float>();
+  const CrossedLanes crossed = ellipsoids_on_line(pack.centre, pack.shape,
+                                                  {{nearest.x(), nearest.y(), nearest.z()},
+                                                   {direction.x(), direction.y(), direction.z()},
+                                                   static_cast<float>(-middle),
+                                                   static_cast<float>(line.late - middle),
+                                                   static_cast<float>(line.length - middle)});
+  const auto slot_of = [&](std::size_t i) { return static_cast<std::uint32_t>(kPack * p + i); };
+  each_bit(crossed.late, [&](std::size_t i) { late.push_back(slot_of(i)); });
+  const std::uint32_t rest = crossed.perhaps & ~crossed.late;
+  if (rest == 0) return;
   fetch(normals_[kPack * p]);
-  each_bit(met, [&](std::size_t i) { slots.push_back(static_cast<std::uint32_t>(kPack * p + i)); });
+  each_bit(rest, [&](std::size_t i) { slots.push_back(slot_of(i)); });
 }
 
 void EllipsoidTree::holding(const Eigen::Vector3d& point, std::vector<std::uint32_t>& slots) const {
@@ -227,7 +205,7 @@ void EllipsoidTree::hold_pack(std::size_t p, const Eigen::Vector3d& point,
               wz = from.z() - ConstLanes(pack.centre[2].data());
   const Lanes value = wx * (xx * wx + xy * wy + xz * wz) + wy * (xy * wx + yy * wy + yz * wz) +
                       wz * (xz * wx + yz * wy + zz * wz);
-  const Lanes doubt = kRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
+  const Lanes doubt = kFormRounding * (1.0F + (xx + yy + zz) * (wx * wx + wy * wy + wz * wz));
   each_bit(at_least_zero(1.0F + doubt - value), [&](std::size_t i) {
     const auto slot = static_cast<std::uint32_t>(kPack * p + i);
     const auto lane = static_cast<Eigen::Index>(i);

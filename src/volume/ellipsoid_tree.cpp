@@ -2,6 +2,7 @@
 
 #include <raycloud/core/bounds.h>
 #include <raycloud/core/error.h>
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/parallel.h>
 #include <raycloud/volume/ellipsoid_tree.h>
 
@@ -29,12 +30,29 @@ constexpr float kFar = 1e15F;  // where there is nothing
 
 EllipsoidTree::EllipsoidTree(const Context& context, std::size_t count,
                              const std::function<Eigen::Vector3d(std::size_t)>& place)
-    : slots_(count), packs_((count + kPack - 1) / kPack), normals_(count) {
+    : slots_(count) {
+  lay_out(context, place, [](std::size_t i) { return i; });
+}
+
+EllipsoidTree::EllipsoidTree(const Context& context, const PointTree& points) : slots_(points.size()) {
+  lay_out(
+      context, [&](std::size_t place) { return points.point(place); },
+      [&](std::size_t place) { return points.index(place); });
+}
+
+/// `number(i)` is that of the ellipsoid at `place(i)`.
+template <class Place, class Number>
+void EllipsoidTree::lay_out(const Context& context, const Place& place, const Number& number) {
+  const std::size_t count = size();
   if (count > 0xfffffff0U) throw Error(ErrorCode::out_of_range, "more than 4 294 967 280 points");
   if (count == 0) return;
   origin_ = place(0).array().round();
-  const std::vector<std::uint32_t> order = spatial_order(
-      context, count, [&](std::size_t i) { return Eigen::Vector3f((place(i) - origin_).cast<float>()); });
+  const std::vector<std::uint32_t> order = spatial_order(context, count, [&](std::size_t i) {
+    const Eigen::Vector3d from_origin = place(i) - origin_;
+    return Eigen::Vector3f(from_origin.cast<float>());
+  });
+  packs_ = touched_vector<Pack>(context, (count + kPack - 1) / kPack);
+  normals_ = touched_vector<std::array<std::int16_t, 3>>(context, count);
   parallel_for(context, packs_.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       Pack& pack = packs_[p];
@@ -45,7 +63,7 @@ EllipsoidTree::EllipsoidTree(const Context& context, std::size_t count,
       for (const std::size_t diagonal : {0, 3, 5})
         pack.shape[diagonal].fill(1.0F);
       for (std::size_t i = kPack * p; i < std::min(count, kPack * (p + 1)); ++i)
-        slots_[order[i]] = static_cast<std::uint32_t>(i);
+        slots_[number(order[i])] = static_cast<std::uint32_t>(i);
     }
   });
 }

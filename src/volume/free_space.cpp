@@ -22,8 +22,8 @@ void count(std::uint16_t& counter) {
 }
 
 /// Parts hits in order of time at their longest pauses.
-void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evidence& evidence) {
-  constexpr std::size_t kPauses = Evidence::kEpisodes - 1;
+void part_hits(std::span<const std::uint16_t> ticks, double look_ticks, HitEpisodes& hits) {
+  constexpr std::size_t kPauses = HitEpisodes::kEpisodes - 1;
   std::array<std::size_t, kPauses> after{};  // the hits after which there is a pause, the longest pause first
   std::size_t pauses = 0;
   const auto length = [&](std::size_t i) { return ticks[i + 1] - ticks[i]; };
@@ -39,16 +39,32 @@ void set_episodes(std::span<const std::uint16_t> ticks, double look_ticks, Evide
     after[at] = i;
   }
   std::sort(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(pauses));
-  evidence.begins.fill(ticks.back());
-  evidence.ends.fill(ticks.back());
-  evidence.begins[0] = ticks.front();
+  hits.begins.fill(ticks.back());
+  hits.ends.fill(ticks.back());
+  hits.begins[0] = ticks.front();
   for (std::size_t k = 0; k < pauses; ++k) {
-    evidence.ends[k] = ticks[after[k]];
-    evidence.begins[k + 1] = ticks[after[k] + 1];
+    hits.ends[k] = ticks[after[k]];
+    hits.begins[k + 1] = ticks[after[k] + 1];
   }
 }
 
 }  // namespace
+
+HitEpisodes episodes_of(std::vector<std::uint16_t>& ticks, double look_ticks) {
+  HitEpisodes hits;
+  if (ticks.empty()) return hits;
+  hits.hits = static_cast<std::uint16_t>(std::min<std::size_t>(ticks.size(), kMostCounted));
+  const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
+  if (*last - *first <= look_ticks) {
+    hits.begins.fill(*last);
+    hits.begins[0] = *first;
+    hits.ends.fill(*last);
+    return hits;
+  }
+  std::sort(ticks.begin(), ticks.end());
+  part_hits(ticks, look_ticks, hits);
+  return hits;
+}
 
 void HitTimes::add(const EllipsoidTree& tree, const RayCloud& rays, const TimeScale& scale) {
   std::vector<Further> further;
@@ -84,21 +100,25 @@ void HitTimes::find_episodes(const Context& context, double look_ticks, std::spa
       ticks.assign(first, first + std::min<std::ptrdiff_t>(count, kFirst));
       for (; further != further_.end() && further->slot == slot; ++further)
         ticks.push_back(further->tick);
-      std::sort(ticks.begin(), ticks.end());
-      evidence[slot].hits = static_cast<std::uint16_t>(std::min<std::uint32_t>(count, kMostCounted));
-      set_episodes(ticks, look_ticks, evidence[slot]);
+      static_cast<HitEpisodes&>(evidence[slot]) = episodes_of(ticks, look_ticks);
     }
   });
 }
 
 void add_passes(const EllipsoidTree& tree, const RayCloud& rays, const CountRule& rule,
                 const TimeScale& scale, std::span<Evidence> evidence) {
-  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> slots, late;
   for (const std::uint32_t i : coherent_order(rays, false)) {
-    tree.near_line(rays.starts[i], rays.ends[i], slots);
-    if (slots.empty()) continue;
+    // What a bounded ray leaves so near its end proves nothing.
+    const double beyond = rays.bounded[i] != 0 ? rule.guard.beyond : 0.0;
+    tree.near_line(rays.starts[i], rays.ends[i], beyond, slots, late);
+    for (const std::uint32_t slot : late)
+      __builtin_prefetch(&evidence[slot].crossings, 1);
     for (const std::uint32_t slot : slots)
       __builtin_prefetch(&evidence[slot], 1);
+    for (const std::uint32_t slot : late)
+      count(evidence[slot].crossings);
+    if (slots.empty()) continue;
     const RayPath path(rays, i);
     const std::uint16_t look = look_of(rays.times[i], path.way(), rule.look_time);
     const std::uint16_t tick = scale.tick(rays.times[i]);

@@ -4,6 +4,9 @@
 #include "each_chunk.h"
 #include "transience.h"
 
+#include <raycloud/exec/fresh_memory.h>
+#include <raycloud/exec/parallel.h>
+
 #include <algorithm>
 
 namespace ray {
@@ -13,6 +16,12 @@ namespace {
 bool contradicts(const Evidence& evidence, std::size_t run, bool paper) {
   constexpr float kLongestByChance = 3.0F;
   return paper || static_cast<float>(evidence.passes[run]) * opacity_while_there(evidence) > kLongestByChance;
+}
+
+void count_passes(const Context& context, RaySource& crossing, const EllipsoidTree& tree,
+                  const JudgeRule& rule, std::span<Evidence> evidence) {
+  each_chunk(context, crossing,
+             [&](const RayCloud& rays) { add_passes(tree, rays, rule.counting, rule.times, evidence); });
 }
 
 }  // namespace
@@ -31,18 +40,32 @@ Sides sides_of(Merge merge) {
   return {};
 }
 
+double look_ticks(const JudgeRule& rule) {
+  constexpr double kLongest = 65536.0;
+  return rule.transients.paper ? kLongest : rule.times.ticks(rule.counting.look_time);
+}
+
 std::vector<Evidence> count_evidence(const Context& context, RaySource& ending, RaySource& crossing,
                                      const EllipsoidTree& tree, const JudgeRule& rule) {
   std::vector<Evidence> evidence(tree.size());
   {
     HitTimes times(tree.size());
     each_chunk(context, ending, [&](const RayCloud& rays) { times.add(tree, rays, rule.times); });
-    constexpr double kLongest = 65536.0;  // ticks
-    times.find_episodes(context, rule.transients.paper ? kLongest : rule.times.ticks(rule.counting.look_time),
-                        evidence);
+    times.find_episodes(context, look_ticks(rule), evidence);
   }
-  each_chunk(context, crossing,
-             [&](const RayCloud& rays) { add_passes(tree, rays, rule.counting, rule.times, evidence); });
+  count_passes(context, crossing, tree, rule, evidence);
+  return evidence;
+}
+
+std::vector<Evidence> count_evidence(const Context& context, std::vector<HitEpisodes>&& hits,
+                                     RaySource& crossing, const EllipsoidTree& tree, const JudgeRule& rule) {
+  auto evidence = touched_vector<Evidence>(context, hits.size());
+  parallel_for(context, hits.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot)
+      static_cast<HitEpisodes&>(evidence[slot]) = hits[slot];
+  });
+  hits = std::vector<HitEpisodes>();
+  count_passes(context, crossing, tree, rule, evidence);
   return evidence;
 }
 

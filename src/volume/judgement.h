@@ -35,9 +35,17 @@ inline constexpr std::size_t kJudgedPointBytes = 140;
 /// Whose ends, and which rays that passed, the merge takes out.
 [[nodiscard]] Sides sides_of(Merge merge);
 
+/// How long a pause must be to part hits, in ticks: no time is as long as the paper's.
+[[nodiscard]] double look_ticks(const JudgeRule& rule);
+
 /// All that rays tell of the ellipsoids, by slot: those of `ending` may end in one, those of `crossing` may
 /// cross one; they may be one source. Reads each once and rewinds it. About 2 µs of one core a ray.
 [[nodiscard]] std::vector<Evidence> count_evidence(const Context& context, RaySource& ending,
+                                                   RaySource& crossing, const EllipsoidTree& tree,
+                                                   const JudgeRule& rule);
+
+/// The same, where the hits are known: by slot, and they are given away.
+[[nodiscard]] std::vector<Evidence> count_evidence(const Context& context, std::vector<HitEpisodes>&& hits,
                                                    RaySource& crossing, const EllipsoidTree& tree,
                                                    const JudgeRule& rule);
 

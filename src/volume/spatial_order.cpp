@@ -1,5 +1,6 @@
 #include "spatial_order.h"
 
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/parallel.h>
 
 #include <algorithm>
@@ -58,7 +59,7 @@ void cut_all(std::vector<OrderedPoint>& points, const PointRange& range) {
 std::vector<std::uint32_t> spatial_order(const Context& context, std::size_t count,
                                          const std::function<Eigen::Vector3f(std::size_t)>& point) {
   constexpr std::size_t kPoints = 1 << 16;  // that one thread orders
-  std::vector<OrderedPoint> points(count);
+  auto points = touched_vector<OrderedPoint>(context, count);
   parallel_for(context, count, kPoints, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f at = point(i);
@@ -85,8 +86,10 @@ std::vector<std::uint32_t> spatial_order(const Context& context, std::size_t cou
   parallel_for(context, ranges.size(), 1,
                [&](std::size_t begin, std::size_t) { cut_all(points, ranges[begin]); });
   std::vector<std::uint32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i)
-    order[i] = points[i].index;
+  parallel_for(context, count, kPoints, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      order[i] = points[i].index;
+  });
   return order;
 }
 

@@ -34,9 +34,10 @@ TransientCounts split_whole(const Context& context, RaySource& source, RaySink& 
   RangeNoise noise(ends.sample.bounded, ends.reach);
   noise.add(context, maker.points());
   rule.counting = count_rule(rule.transients.paper, noise.value());
+  OwnHits own(context, maker.points(), end_ticks(context, source, rule.times), look_ticks(rule));
   const std::unique_ptr<EllipsoidTree> tree =
-      EllipsoidMaker(std::move(maker)).make(context, ends.reach, noise.value());
-  const std::vector<Evidence> evidence = count_evidence(context, source, source, *tree, rule);
+      EllipsoidMaker(std::move(maker)).make(context, ends.reach, noise.value(), &own);
+  const std::vector<Evidence> evidence = count_evidence(context, own.take(), source, *tree, rule);
   const Sides sides = sides_of(rule.transients.merge);
   const auto scores_of = [&](const std::optional<Contradiction>& which) {
     return which ? transience_scores(context, *tree, evidence, *which, kWithinCloud, rule.transients.paper)

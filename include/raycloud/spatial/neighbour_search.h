@@ -13,6 +13,18 @@ struct Neighbour {
   std::uint32_t place = 0;
 };
 
+/// All x with (x - centre)ᵀ shape (x - centre) <= 1: where points are looked for.
+struct SearchedBody {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();     ///< m
+  Eigen::Matrix3d shape = Eigen::Matrix3d::Identity();  ///< 1/m², symmetric, positive definite
+};
+
+/// Places of all points in a body.
+struct PlacesInside {
+  std::span<const std::uint32_t> surely;
+  std::span<const std::uint32_t> perhaps;  ///< for the caller to look at: near its surface, and a few others
+};
+
 /// The order of neighbours: by distance, equal ones by the index of the point.
 inline auto nearer_first(const PointTree& tree) {
   return [&tree](const Neighbour& a, const Neighbour& b) {
@@ -43,6 +55,10 @@ class NeighbourSearch {
   /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.
   std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
                                             const Eigen::Vector3d& normal);
+
+  /// All points in a body, the one at `place` too. Any body will do; one that lies around the place, no wider
+  /// than its neighbours, is fast. Valid until the next call. About 0.1 µs.
+  PlacesInside inside(std::size_t place, const SearchedBody& body);
 
   /// Places [begin, end) that lie together.
   struct Leaf {

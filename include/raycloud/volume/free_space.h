@@ -40,10 +40,9 @@ class TimeScale {
   double per_second_;
 };
 
-/// Rays counted by where they stand to the times at which the ellipsoid was hit. These are at most four
-/// episodes: the hits are parted at the three longest pauses between them, where these are longer than a
-/// look. Counts end at 60 000. 42 bytes.
-struct Evidence {
+/// When an ellipsoid was hit: in at most four episodes, as the hits are parted at the three longest pauses
+/// between them, where these are longer than a look. 18 bytes.
+struct HitEpisodes {
   static constexpr std::size_t kEpisodes = 4;
   /// Before the first episode, between episodes, after the last.
   static constexpr std::size_t kRuns = kEpisodes + 1;
@@ -51,12 +50,7 @@ struct Evidence {
   /// Ticks of the first and last hit of each episode; those that there are not repeat the end of the last.
   std::array<std::uint16_t, kEpisodes> begins{};
   std::array<std::uint16_t, kEpisodes> ends{};
-  std::uint16_t hits = 0;       ///< bounded rays that end in it
-  std::uint16_t crossings = 0;  ///< rays that begin before it and end behind it
-  std::uint16_t within = 0;     ///< of these, those that prove it empty, in the time of an episode
-  std::array<std::uint16_t, kRuns> passes{};  ///< and outside of them
-  /// For each run a bit for each look, by its hash: passes of one time from about one direction.
-  std::array<std::uint16_t, kRuns> looks{};
+  std::uint16_t hits = 0;  ///< bounded rays that end in it, at most 60 000
 
   /// Which run a time is in; kRuns: in an episode.
   [[nodiscard]] std::size_t run_at(std::uint16_t tick) const {
@@ -66,6 +60,20 @@ struct Evidence {
     }
     return kEpisodes;
   }
+  friend bool operator==(const HitEpisodes&, const HitEpisodes&) = default;
+};
+/// Of hits at these times, which it may sort. Pauses are longer than `look_ticks`.
+[[nodiscard]] HitEpisodes episodes_of(std::vector<std::uint16_t>& ticks, double look_ticks);
+
+/// Rays counted by where they stand to the times at which the ellipsoid was hit. Counts end at 60 000. 42
+/// bytes.
+struct Evidence : HitEpisodes {
+  std::uint16_t crossings = 0;  ///< rays that begin before it and end behind it
+  std::uint16_t within = 0;     ///< of these, those that prove it empty, in the time of an episode
+  std::array<std::uint16_t, kRuns> passes{};  ///< and outside of them
+  /// For each run a bit for each look, by its hash: passes of one time from about one direction.
+  std::array<std::uint16_t, kRuns> looks{};
+
   friend bool operator==(const Evidence&, const Evidence&) = default;
 };
 

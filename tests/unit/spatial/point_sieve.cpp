@@ -71,6 +71,14 @@ RC_GTEST_PROP(PointSieve, LanesDoWhatPlainLoopsDo, ()) {
     RC_ASSERT(sieve_least_sum(*wide, sphere.middle, values.data(), count) ==
               plain::sieve_least_sum(*wide, sphere.middle, values.data(), count));
   }
+  SieveBody body{.centre = {coarse(4), coarse(4), coarse(4)},
+                 .shape = {2.0F, coarse(2), coarse(2), 1.0F, coarse(2), 3.0F}};
+  body.rounding = *rc::gen::element(0.0F, 1e-6F, 0.125F);
+  const auto inside = std::make_unique<SievedPoints>(), plainly_inside = std::make_unique<SievedPoints>();
+  sieve_body(*wide, body, *inside);
+  plain::sieve_body(*wide, body, *plainly_inside);
+  RC_ASSERT(listed(*inside) == listed(*plainly_inside));
+
   sieve_further(*near, 0.75F);
   plain::sieve_further(*expected, 0.75F);
   RC_ASSERT(listed(*near) == listed(*expected));

@@ -10,8 +10,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 namespace ray {
 namespace {
@@ -65,6 +67,41 @@ Found sorted(const PointTree& tree, std::span<const Neighbour> neighbours) {
     found.emplace_back(neighbour.distance2, tree.index(neighbour.place));
   std::sort(found.begin(), found.end());
   return found;
+}
+
+/// Around points of the tree or anywhere, as wide as a leaf or as all, and flat.
+RC_GTEST_PROP(PointTree, InsideABodyAreThoseOfBruteForce, (std::uint64_t seed)) {
+  const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
+  const auto count = *rc::gen::inRange<std::size_t>(1, 600);
+  const Eigen::Vector3d origin =
+      *rc::gen::element(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(5e5, 6.9e6, 100.0));
+  const std::vector<SeenPoint> points = arranged(arrangement, count, seed, origin);
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  const RandomStream random(seed, "bodies");
+  for (std::size_t place = 0; place < count; ++place) {
+    const auto uniform = [&](std::uint64_t draw) { return 2.0 * random.uniform(place, draw) - 1.0; };
+    if (place % 2 == 0) std::ignore = search.nearest(place, 16, 1e9);
+    const double size = std::pow(10.0, -1.5 + uniform(0)), flat = place % 3 == 0 ? 0.01 : 0.7;
+    const Eigen::Vector3d across = Eigen::Vector3d(uniform(1), uniform(2), uniform(3)).normalized();
+    const Eigen::Matrix3d along = across * across.transpose();
+    SearchedBody body;
+    body.centre = tree.point(place) + 0.5 * size * Eigen::Vector3d(uniform(4), uniform(5), uniform(6));
+    body.shape = (along / (flat * flat) + Eigen::Matrix3d::Identity() - along) / (size * size);
+    body.shape = body.shape.cast<float>().cast<double>().eval();
+    const auto is_inside = [&](std::uint32_t at) {
+      const Eigen::Vector3d offset = tree.point(at) - body.centre;
+      return offset.dot(body.shape * offset) <= 1.0;
+    };
+    const PlacesInside inside = search.inside(place, body);
+    std::vector<std::uint32_t> found(inside.surely.begin(), inside.surely.end()), expected;
+    RC_ASSERT(std::all_of(found.begin(), found.end(), is_inside));
+    std::copy_if(inside.perhaps.begin(), inside.perhaps.end(), std::back_inserter(found), is_inside);
+    std::sort(found.begin(), found.end());
+    for (std::uint32_t other = 0; other < count; ++other)
+      if (is_inside(other)) expected.push_back(other);
+    RC_ASSERT(found == expected);
+  }
 }
 
 RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForce, ()) {
