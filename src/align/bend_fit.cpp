@@ -1,5 +1,7 @@
 #include "bend_fit.h"
 
+#include "fine.h"
+
 #include <raycloud/exec/parallel.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,6 @@
 #include "bend_fit.h"
 #include "bent_source.h"
+#include "fine.h"
 #include "hypotheses.h"
 
 #include <raycloud/align/clouds.h>
