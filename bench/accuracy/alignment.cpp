@@ -225,7 +225,8 @@ void pair_rows(const World& world, int pairs) {
   for (const double overlap : world.overlaps) {
     if (!is_wanted(row_name(world, overlap))) continue;
     Tally tally;
-    const ray::RandomStream random(7 + other_worlds(), world.name + std::to_string(std::lround(100.0 * overlap)));
+    const ray::RandomStream random(7 + other_worlds(),
+                                   world.name + std::to_string(std::lround(100.0 * overlap)));
     for (int i = 0; i < pairs; ++i)
       judge(cut_pair(scans[static_cast<std::size_t>(i % kScansOfWorld)], overlap, world.tilt, random,
                      static_cast<std::uint64_t>(i)),

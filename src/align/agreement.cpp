@@ -42,7 +42,7 @@ Seen seen_of(const Patch& patch, const Pose& pose, const Observed& other, double
   seen.is_same = nearest < within;
   if (seen.is_same) seen.cost = nearest * nearest / (within * within);
   // Rays along a surface cross its cubes too, and the other cloud may end there: they must have gone through.
-  const Eigen::Vector3d step = (is_flat ? kThrough * other.level.width() : 0.0) * normal;
+  const Eigen::Vector3d step = (is_flat ? kThrough * other.free.width() : 0.0) * normal;
   seen.is_empty = !seen.is_same && !seen.is_beside && nearest_mean > kThrough * other.level.width() &&
                   other.free.is_crossed(place + step) && other.free.is_crossed(place - step);
   return seen;

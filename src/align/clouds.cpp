@@ -1,5 +1,6 @@
 #include "bend_fit.h"
 #include "bent_source.h"
+#include "ground.h"
 #include "hypotheses.h"
 
 #include <raycloud/align/clouds.h>
@@ -7,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -91,19 +93,62 @@ void add_aside(const Context& context, const Known& cloud, const Known& referenc
   sort_by_score(all);
 }
 
+/// Turned by so much (rad) about a horizontal axis that what was at `up` is up.
+Eigen::Matrix3d upright(const Eigen::Vector3d& up) {
+  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// The rotation that levels the floors of a cloud, if there are any.
+Eigen::Matrix3d level_by_floors(const Known& known) {
+  constexpr double kMostTilt = 0.3;  // rad
+  return levelling(floor_patches(known.fine, kMostTilt)).value_or(Eigen::Matrix3d::Identity());
+}
+
+/// The best `kKept` of a search with these verticals, fitted.
+std::vector<Hypothesis> search(const Context& context, const Known& cloud, const Known& reference,
+                               const Jury& jury, const Verticals& verticals) {
+  constexpr std::size_t kKept = 24;
+  std::vector<Hypothesis> found = rough_hypotheses(context, cloud, reference, verticals);
+  found.resize(std::min(found.size(), kKept));
+  return fitted(context, cloud, reference, jury, std::move(found));
+}
+
+/// Where the search found nothing that more speaks for than against, one of the clouds may be tilted: it is
+/// searched for again with the floors of both level, and then as the best pose of all tilts them.
+void search_tilted(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
+                   std::vector<Hypothesis>& all) {
+  const auto is_found = [&] { return all.front().score > 0.0; };
+  const auto is_tilted = [](const Eigen::Matrix3d& rotation) {
+    constexpr double kTilt = 0.02;  // rad
+    return Eigen::AngleAxisd(rotation).angle() > kTilt;
+  };
+  const auto add = [&](const Verticals& verticals) {
+    if (!is_tilted(verticals.cloud) && !is_tilted(verticals.reference)) return;
+    const std::vector<Hypothesis> more = search(context, cloud, reference, jury, verticals);
+    all.insert(all.end(), more.begin(), more.end());
+    sort_by_score(all);
+  };
+  if (!is_found()) add({level_by_floors(cloud), level_by_floors(reference)});
+  if (!is_found())
+    add({upright(all.front().pose.rotation.transpose() * Eigen::Vector3d::UnitZ()),
+         Eigen::Matrix3d::Identity()});
+}
+
 /// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
 /// are looked for too, and those beside the best of all until there is no better.
 std::vector<Hypothesis> judge(const Context& context, const Known& cloud, const Known& reference,
                               const Jury& jury, bool local) {
-  constexpr std::size_t kKept = 24, kBeside = 3;
+  constexpr std::size_t kBeside = 3;
   constexpr int kRounds = 3;
   constexpr double kFarBelow = 20.0;  // cells
   std::vector<Hypothesis> all;
-  if (!local) all = rough_hypotheses(context, cloud, reference);
-  all.resize(std::min(all.size(), kKept));
+  if (!local) all = search(context, cloud, reference, jury, Verticals());
   const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
-  all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
-  all = fitted(context, cloud, reference, jury, std::move(all));
+  const std::vector<Hypothesis> here =
+      fitted(context, cloud, reference, jury, {{{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0}});
+  all.insert(all.end(), here.begin(), here.end());
+  sort_by_score(all);
+  if (!local) search_tilted(context, cloud, reference, jury, all);
   std::vector<Pose> looked;
   const auto is_looked = [&](const Hypothesis& one) {
     return std::any_of(looked.begin(), looked.end(),
@@ -129,8 +174,17 @@ struct Doubt {
   bool is_elsewhere = false;  ///< another place is as good
 };
 
+/// So near each other (a few metres) that narrow patches tell which is right, if anything does.
+bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
+  constexpr double kFar = 6.0;   // widths
+  constexpr double kTurn = 0.1;  // rad
+  return (a.translation - b.translation).norm() < kFar * cloud.fine.width() &&
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() < kTurn;
+}
+
 /// Others are rivals wherever they came to lie elsewhere, however near.
-Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud) {
+Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud,
+               const Jury& jury) {
   constexpr double kSigmas = 2.0;
   constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
   constexpr double kLess = 0.5;          // of the score of the best, for others to be rivals
@@ -147,7 +201,8 @@ Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Kn
   };
   const auto is_rival = [&](const Hypothesis& other) {
     return is_elsewhere(other.pose) && !other.is_idle() &&
-           other.score > best.score - kLess * std::abs(best.score) && sigmas_worse(other, best) < kSigmas;
+           other.score > best.score - kLess * std::abs(best.score) && sigmas_worse(other, best) < kSigmas &&
+           !(is_near(other.pose, best.pose, cloud) && jury.sigmas_worse_closely(other, best) >= kSigmas);
   };
   const auto is_far = [&](const Hypothesis& other) { return !is_same_place(other.pose, best.pose, cloud); };
   const auto is_far_rival = [&](const Hypothesis& other) { return is_far(other) && is_rival(other); };
@@ -185,7 +240,7 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud);
+  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud, jury);
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;

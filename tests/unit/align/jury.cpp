@@ -2,7 +2,12 @@
 
 #include "align/jury.h"
 
+#include <raycloud/core/memory_stream.h>
+#include <raycloud/exec/random.h>
+
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace ray::align {
 namespace {
@@ -26,6 +31,61 @@ TEST(Jury, TellsWhatOnlyOneCloudHasFromAWrongPose) {
   EXPECT_FALSE(is_by_one_only(side(200, 60), side(200, 0))) << "too much";
   EXPECT_FALSE(is_by_one_only(side(200, 20), side(20, 0))) << "the other side knows too little to tell";
   EXPECT_FALSE(is_by_one_only(side(200, 20), side(0, 0))) << "the other side knows nothing";
+}
+
+/// A street of 60 m along x, 8 m wide, 1 cm of noise, whose house fronts have piers every 6 m; or no piers.
+Known street_scan(std::uint64_t seed, bool has_piers) {
+  constexpr double kLength = 60.0, kEvery = 6.0, kPier = 0.4, kDepth = 0.06, kHalf = 4.0, kHeight = 6.0;
+  constexpr std::size_t kRays = 200'000, kKinds = 60;
+  const RandomStream random(seed, "street");
+  RayCloud cloud;
+  cloud.resize(kRays);
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const double x = kLength * random.uniform(i, 0), v = random.uniform(i, 1), u = random.uniform(i, 4),
+                 noise = 0.035 * (random.uniform(i, 2) - 0.5), side = random.below(2, i, 3) == 0 ? -1.0 : 1.0,
+                 face = random.below(2, i, 6) == 0 ? -0.5 : 0.5;
+    const double off = std::remainder(x, kEvery);
+    const double front = kHalf - (has_piers && std::abs(off) < 0.5 * kPier ? kDepth : 0.0);
+    Eigen::Vector3d& end = cloud.ends[i];
+    cloud.starts[i] = {x, 0.0, 1.6};
+    switch (random.below(kKinds, i, 5)) {
+      case 0:  // the sides of piers
+        end = {x - off + face * kPier + noise, side * (kHalf - kDepth * u), kHeight * v};
+        cloud.starts[i].x() = end.x() + 6.0 * face;
+        break;
+      default:
+        if (random.below(3, i, 7) == 0)
+          end = {x, 2.0 * kHalf * (v - 0.5), noise};
+        else
+          end = {x, side * (front + noise), kHeight * v};
+    }
+    cloud.bounded[i] = has_piers || random.below(kKinds, i, 5) > 0 ? 1 : 0;
+  }
+  MemorySource source(std::move(cloud));
+  const Survey survey = survey_ends({}, source);
+  return Known({}, gather_surfaces({}, source, survey, patch_width(survey)));
+}
+
+/// Along a street little tells a pose from one half a patch further; where nothing does, none may be told.
+TEST(Jury, TellsPosesHalfAPatchApartClosely) {
+  for (const bool has_piers : {true, false}) {
+    const Known cloud = street_scan(1, has_piers), reference = street_scan(2, has_piers);
+    const Jury jury(cloud, reference);
+    Hypothesis best{
+        {Eigen::Matrix3d::Identity(), cloud.surfaces.survey.origin - reference.surfaces.survey.origin},
+        {},
+        {},
+        0.0};
+    Hypothesis other = best;
+    other.pose.translation.x() += 0.5 * cloud.fine.width();
+    jury.judge(best), jury.judge(other);
+    const double closely = jury.sigmas_worse_closely(other, best);
+    EXPECT_LT(sigmas_worse(other, best), 2.0);
+    if (has_piers)
+      EXPECT_GT(closely, 5.0);
+    else
+      EXPECT_LT(closely, 2.0);
+  }
 }
 
 }  // namespace
