@@ -113,25 +113,41 @@ std::vector<Hypothesis> search(const Context& context, const Known& cloud, const
   return fitted(context, cloud, reference, jury, std::move(found));
 }
 
-/// Where the search found nothing that more speaks for than against, one of the clouds may be tilted: it is
-/// searched for again with the floors of both level, and then as the best pose of all tilts them.
+/// Whether a pose brings one vertical onto the other.
+bool fits_verticals(const Pose& pose, const Verticals& verticals) {
+  constexpr double kTilt = 0.02;  // rad
+  const Eigen::Vector3d up = pose.rotation * verticals.cloud.transpose() * Eigen::Vector3d::UnitZ();
+  return up.dot(verticals.reference.transpose() * Eigen::Vector3d::UnitZ()) > std::cos(kTilt);
+}
+
+/// The search turns the cloud about the vertical, and so finds little if one of the clouds is tilted. Where
+/// what it found is tilted or refuted, it is made again with the floors of both level, and then as the best
+/// tilts them.
 void search_tilted(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
                    std::vector<Hypothesis>& all) {
-  const auto is_found = [&] { return all.front().score > 0.0; };
-  const auto is_tilted = [](const Eigen::Matrix3d& rotation) {
-    constexpr double kTilt = 0.02;  // rad
-    return Eigen::AngleAxisd(rotation).angle() > kTilt;
+  std::vector<Verticals> searched{Verticals()};
+  const auto is_searched = [&](const Pose& pose) {
+    return std::any_of(searched.begin(), searched.end(),
+                       [&](const Verticals& one) { return fits_verticals(pose, one); });
+  };
+  const auto is_found = [&] {
+    const Hypothesis& best = all.front();
+    return !best.is_idle() && !best.is_refuted() && is_searched(best.pose);
   };
   const auto add = [&](const Verticals& verticals) {
-    if (!is_tilted(verticals.cloud) && !is_tilted(verticals.reference)) return;
     const std::vector<Hypothesis> more = search(context, cloud, reference, jury, verticals);
     all.insert(all.end(), more.begin(), more.end());
     sort_by_score(all);
+    searched.push_back(verticals);
   };
-  if (!is_found()) add({level_by_floors(cloud), level_by_floors(reference)});
-  if (!is_found())
-    add({upright(all.front().pose.rotation.transpose() * Eigen::Vector3d::UnitZ()),
-         Eigen::Matrix3d::Identity()});
+  if (is_found()) return;
+  const Verticals floors{level_by_floors(cloud), level_by_floors(reference)}, none;
+  const auto is_upright = [&](const Eigen::Matrix3d& rotation) {
+    return fits_verticals({rotation, {}}, none);
+  };
+  if (!is_upright(floors.cloud) || !is_upright(floors.reference)) add(floors);
+  if (!is_found() && !is_searched(all.front().pose))
+    add({upright(all.front().pose.rotation.transpose() * Eigen::Vector3d::UnitZ()), none.reference});
 }
 
 /// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
@@ -186,12 +202,11 @@ bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
 Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud,
                const Jury& jury) {
   constexpr double kSigmas = 2.0;
-  constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
-  constexpr double kLess = 0.5;          // of the score of the best, for others to be rivals
+  constexpr double kLess = 0.5;  // of the score of the best, for others to be rivals
   const Hypothesis& best = judged.front();
   const std::string found = "the best overlap found is " + percent(best.overlap());
   if (best.is_idle()) return {"too few surfaces are in both: " + found};
-  if (best.refuted_share() > kMostRefuted && !best.is_refuted_by_one_only())
+  if (best.is_refuted())
     return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
   const auto is_elsewhere = [&](const Pose& pose) {

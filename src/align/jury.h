@@ -41,6 +41,10 @@ struct Hypothesis {
   /// One cloud has much that is not in the other, and the other nearly nothing that is not in it: leaves,
   /// snow, or furniture. Of a wrong pose both have.
   [[nodiscard]] bool is_refuted_by_one_only() const;
+  [[nodiscard]] bool is_refuted() const {
+    constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
+    return refuted_share() > kMostRefuted && !is_refuted_by_one_only();
+  }
 };
 
 /// By how many standard errors more speaks against a pose than is usual under the best one, if cells are
