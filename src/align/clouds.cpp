@@ -202,7 +202,6 @@ bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
 Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud,
                const Jury& jury) {
   constexpr double kSigmas = 2.0;
-  constexpr double kLess = 0.5;  // of the score of the best, for others to be rivals
   const Hypothesis& best = judged.front();
   const std::string found = "the best overlap found is " + percent(best.overlap());
   if (best.is_idle()) return {"too few surfaces are in both: " + found};
@@ -214,10 +213,21 @@ Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Kn
     return (pose.translation - best.pose.translation).norm() > kApart * cloud.fine.width() ||
            !is_same_place(pose, best.pose, cloud);
   };
+  const auto has_score = [&](const Hypothesis& other) {
+    constexpr double kLess = 0.5;        // of the score of the best, for others to be rivals
+    constexpr double kLessKnown = 0.03;  // or of what is known of it
+    return other.score > best.score - std::max(kLess * std::abs(best.score),
+                                               kLessKnown * (best.there.known + best.back.known));
+  };
+  // Where little is in both, much of that is edges, and apart: far away, what is refuted must tell, too.
+  const auto is_worse = [&](const Hypothesis& other) {
+    const bool is_less = sigmas_worse(other, best) >= kSigmas;
+    return is_near(other.pose, best.pose, cloud)
+               ? is_less || jury.sigmas_worse_closely(other, best) >= kSigmas
+               : is_less && sigmas_more_refuted(other, best) >= kSigmas;
+  };
   const auto is_rival = [&](const Hypothesis& other) {
-    return is_elsewhere(other.pose) && !other.is_idle() &&
-           other.score > best.score - kLess * std::abs(best.score) && sigmas_worse(other, best) < kSigmas &&
-           !(is_near(other.pose, best.pose, cloud) && jury.sigmas_worse_closely(other, best) >= kSigmas);
+    return is_elsewhere(other.pose) && !other.is_idle() && has_score(other) && !is_worse(other);
   };
   const auto is_far = [&](const Hypothesis& other) { return !is_same_place(other.pose, best.pose, cloud); };
   const auto is_far_rival = [&](const Hypothesis& other) { return is_far(other) && is_rival(other); };

@@ -12,6 +12,29 @@ Pose inverse_of(const Pose& pose) {
   return {pose.rotation.transpose(), -(pose.rotation.transpose() * pose.translation)};
 }
 
+/// By how many standard errors there is more of `what` in the cells of a pose than is usual under the best
+/// one, in which there is `in_best` of it.
+double sigmas_more(float Evidence::Cell::*what, double in_best, const Hypothesis& other,
+                   const Hypothesis& best, double least_share) {
+  const double known = best.there.known + best.back.known;
+  const double usual = known > 0.0 ? in_best / known : 0.0;
+  const auto excess = [&](const Evidence::Cell& cell) {
+    return static_cast<double>(cell.*what) - usual * static_cast<double>(cell.known);
+  };
+  double sum = 0.0, squares = 0.0;
+  const auto add = [&](const Evidence& a, const Evidence& b) {
+    for (std::size_t i = 0; i < a.cells.size(); ++i) {
+      const double difference = excess(a.cells[i]) - excess(b.cells[i]);
+      sum += difference;
+      squares += difference * difference;
+    }
+  };
+  add(other.there, best.there);
+  add(other.back, best.back);
+  // Noise alone is significant where it is the same everywhere.
+  return sum > least_share * known ? sum / std::sqrt(squares) : 0.0;
+}
+
 }  // namespace
 
 Known::Known(const Context& context, Surfaces gathered)
@@ -84,23 +107,14 @@ double Jury::glance(const Pose& pose) const {
 }
 
 double sigmas_worse(const Hypothesis& other, const Hypothesis& best, double least_share) {
-  const double known = best.there.known + best.back.known;
-  const double usual = known > 0.0 ? (best.there.against + best.back.against) / known : 0.0;
-  const auto excess = [usual](const Evidence::Cell& cell) {
-    return static_cast<double>(cell.against) - usual * static_cast<double>(cell.known);
-  };
-  double sum = 0.0, squares = 0.0;
-  const auto add = [&](const Evidence& a, const Evidence& b) {
-    for (std::size_t i = 0; i < a.cells.size(); ++i) {
-      const double difference = excess(a.cells[i]) - excess(b.cells[i]);
-      sum += difference;
-      squares += difference * difference;
-    }
-  };
-  add(other.there, best.there);
-  add(other.back, best.back);
-  // Noise alone is significant where it is the same everywhere.
-  return sum > least_share * known ? sum / std::sqrt(squares) : 0.0;
+  return sigmas_more(&Evidence::Cell::against, best.there.against + best.back.against, other, best,
+                     least_share);
+}
+
+double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best) {
+  constexpr double kLeastShare = 0.01;
+  return sigmas_more(&Evidence::Cell::refuted, best.there.refuted + best.back.refuted, other, best,
+                     kLeastShare);
 }
 
 }  // namespace ray::align

@@ -52,6 +52,9 @@ struct Hypothesis {
 /// overlaps more tells nothing.
 [[nodiscard]] double sigmas_worse(const Hypothesis& other, const Hypothesis& best, double least_share = 0.01);
 
+/// The same of what is refuted alone.
+[[nodiscard]] double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best);
+
 /// Judges poses from both sides, by an even choice of the patches of either cloud.
 class Jury {
  public:

@@ -88,5 +88,65 @@ TEST(Jury, TellsPosesHalfAPatchApartClosely) {
   }
 }
 
+/// A wall of 31 cm along y, seen from one side; rays to the sky pass along both sides, or through the place
+/// of the wall where there is none.
+RayCloud wall_scan(bool is_from_behind, bool is_there) {
+  constexpr std::size_t kRays = 60'000;
+  constexpr double kThick = 0.31;
+  const RandomStream random(is_from_behind ? 1 : 2, "wall");
+  RayCloud cloud;
+  cloud.resize(kRays);
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const double y = 8.0 * random.uniform(i, 0), z = 4.0 * random.uniform(i, 1),
+                 beside = 1.5 * random.uniform(i, 2), noise = 0.035 * (random.uniform(i, 3) - 0.5);
+    const double from = is_from_behind ? 4.0 : -4.0, face = is_from_behind ? kThick : 0.0,
+                 along = i % 8 == 0 ? -beside : kThick + beside;
+    const bool is_along = is_there && i % 4 == 0;
+    cloud.starts[i] = is_along ? Eigen::Vector3d(along, -4.0, z) : Eigen::Vector3d(from, y, z);
+    cloud.ends[i] = is_along   ? Eigen::Vector3d(along, 12.0, z)
+                    : is_there ? Eigen::Vector3d(face + noise, y, z)
+                               : Eigen::Vector3d(-from, y, z);
+    cloud.bounded[i] = is_there && !is_along ? 1 : 0;
+    // Something that both have seen.
+    if (i % 4 == 1) cloud.ends[i] = {from, y, -1.0 + noise}, cloud.bounded[i] = 1;
+  }
+  return cloud;
+}
+
+TEST(Jury, RaysOnBothSidesOfAThinWallDidNotGoThrough) {
+  const auto refuted = [](bool is_there) {
+    const auto known = [](RayCloud rays) {
+      MemorySource source(std::move(rays));
+      Survey survey = survey_ends({}, source);
+      survey.origin.setZero();
+      return Known({}, gather_surfaces({}, source, survey, 0.2));
+    };
+    const Known cloud = known(wall_scan(false, true)), reference = known(wall_scan(true, is_there));
+    Hypothesis one;
+    one.pose.rotation.setIdentity(), one.pose.translation.setZero();
+    Jury(cloud, reference).judge(one);
+    return one.there.refuted;
+  };
+  EXPECT_EQ(refuted(true), 0.0);
+  EXPECT_GT(refuted(false), 5.0);
+}
+
+/// Of a pose with little overlap much is edges, and apart: that is not to be taken for refuted.
+TEST(Jury, TellsWhatIsApartFromWhatIsRefuted) {
+  const auto with = [](float against, float refuted) {
+    Hypothesis one;
+    for (int i = 0; i < 100; ++i) {
+      one.there.cells.push_back({1.0F, i % 2 == 0 ? against : 0.0F, i % 2 == 0 ? refuted : 0.0F});
+      one.there.known += 1.0;
+      one.there.against += i % 2 == 0 ? against : 0.0, one.there.refuted += i % 2 == 0 ? refuted : 0.0;
+    }
+    return one;
+  };
+  const Hypothesis best = with(0.1F, 0.05F), apart = with(0.4F, 0.05F), refuted = with(0.4F, 0.35F);
+  EXPECT_GT(sigmas_worse(apart, best), 5.0);
+  EXPECT_EQ(sigmas_more_refuted(apart, best), 0.0);
+  EXPECT_GT(sigmas_more_refuted(refuted, best), 5.0);
+}
+
 }  // namespace
 }  // namespace ray::align
