@@ -187,6 +187,18 @@ void judge(const CloudPair& pair, const std::string& name, Tally& tally) {
                             : "WRONG");
 }
 
+std::uint64_t number_given(const char* variable, std::uint64_t otherwise) {
+  const char* given = std::getenv(variable);
+  return given != nullptr ? std::strtoull(given, nullptr, 10) : otherwise;
+}
+
+/// Numbers that alignment needs are chosen on other worlds and cuts than those of the tables: with
+/// RAYCLOUD_BENCH_WORLDS, above 0, every seed is another.
+std::uint64_t other_worlds() {
+  constexpr std::uint64_t kApart = 100;
+  return kApart * number_given("RAYCLOUD_BENCH_WORLDS", 0);
+}
+
 /// Whether one of the words of RAYCLOUD_BENCH_ROWS is in the name of a row, as in "street:50"; all rows where
 /// there are no words.
 bool is_wanted(const std::string& row) {
@@ -213,7 +225,8 @@ void pair_rows(const World& world, int pairs) {
   for (const double overlap : world.overlaps) {
     if (!is_wanted(row_name(world, overlap))) continue;
     Tally tally;
-    const ray::RandomStream random(7, world.name + std::to_string(std::lround(100.0 * overlap)));
+    const ray::RandomStream random(7 + other_worlds(),
+                                   world.name + std::to_string(std::lround(100.0 * overlap)));
     for (int i = 0; i < pairs; ++i)
       judge(cut_pair(scans[static_cast<std::size_t>(i % kScansOfWorld)], overlap, world.tilt, random,
                      static_cast<std::uint64_t>(i)),
@@ -240,16 +253,17 @@ void pair_rows(const World& world, int pairs) {
 }  // namespace
 
 void print_alignment() {
-  const char* pairs_given = std::getenv("RAYCLOUD_BENCH_PAIRS_PER_ROW");
-  const int pairs = pairs_given != nullptr ? std::atoi(pairs_given) : 6;
+  const int pairs = static_cast<int>(number_given("RAYCLOUD_BENCH_PAIRS_PER_ROW", 6));
   std::printf(
       "\nOne cloud onto another: parts of two scans of one world with other people and vehicles in each, 2 cm of "
       "noise, any yaw, up to 100 m apart; by the share of its points that each has in common with the other. "
       "Coarse: within 0.5 degrees and 0.2 m; fine: 0.05 degrees and 2 cm; wrong: not coarse, and not refused\n\n"
       "| world, overlap | pairs | coarse, %% | fine, %% | wrong, %% | refused, %% | of these right, %% | turn, degrees: "
       "median, 95 %% | shift, m | seconds | bar | |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const ray::Scene building = make_scene(ray::SceneKind::building, 2),
-                   forest = make_scene(ray::SceneKind::forest, 2), street = street_scene(7, 0);
+  const std::uint64_t other = other_worlds();
+  const ray::Scene building = make_scene(ray::SceneKind::building, 2 + other),
+                   forest = make_scene(ray::SceneKind::forest, 2 + other),
+                   street = street_scene(7 + other, 0);
   const auto world = [](const std::string& name, const ray::Scene& scene, std::uint64_t rays) {
     return World{name, with_movers(scene, 6, 1), reversed(with_movers(scene, 6, 2)), rays, rays};
   };

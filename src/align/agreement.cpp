@@ -22,6 +22,20 @@ struct Seen {
   [[nodiscard]] bool is_known() const { return is_same || is_beside || is_empty; }
 };
 
+/// Whether the other cloud has seen the back of a flat patch, as of a thin wall: then rays on both sides of
+/// it have not gone through.
+bool has_back(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, const PatchLevel& level) {
+  constexpr double kOpposite = -0.8;             // cosine
+  constexpr double kMiddle = 0.4, kThick = 0.8;  // widths
+  bool found = false;
+  level.each_near(place - kMiddle * level.width() * normal, [&](const Patch& surface) {
+    const double behind = normal.dot(place - surface.mean);
+    found = found || (surface.is_flat() && surface.normal.dot(normal) < kOpposite && behind > 0.0 &&
+                      behind < kThick * level.width());
+  });
+  return found;
+}
+
 Seen seen_of(const Patch& patch, const Pose& pose, const Observed& other, double tolerance) {
   constexpr double kAligned = 0.8;   // cosine
   constexpr double kThrough = 0.75;  // widths
@@ -42,9 +56,10 @@ Seen seen_of(const Patch& patch, const Pose& pose, const Observed& other, double
   seen.is_same = nearest < within;
   if (seen.is_same) seen.cost = nearest * nearest / (within * within);
   // Rays along a surface cross its cubes too, and the other cloud may end there: they must have gone through.
-  const Eigen::Vector3d step = (is_flat ? kThrough * other.level.width() : 0.0) * normal;
+  const Eigen::Vector3d step = (is_flat ? kThrough * other.free.width() : 0.0) * normal;
   seen.is_empty = !seen.is_same && !seen.is_beside && nearest_mean > kThrough * other.level.width() &&
-                  other.free.is_crossed(place + step) && other.free.is_crossed(place - step);
+                  other.free.is_crossed(place + step) && other.free.is_crossed(place - step) &&
+                  !(is_flat && has_back(place, normal, other.level));
   return seen;
 }
 
@@ -145,11 +160,12 @@ Evidence evidence_of(const Witnesses& witnesses, const Pose& pose, const Observe
   evidence.cells.reserve(cells.size());
   for (const Sums& cell : cells) {
     const double scale = 1.0 / (cell.known + kFew), known = scale * cell.known,
-                 against = scale * (cell.refuted + kApart * cell.apart);
-    evidence.cells.push_back({static_cast<float>(known), static_cast<float>(against)});
+                 refuted = scale * cell.refuted, against = refuted + scale * kApart * cell.apart;
+    evidence.cells.push_back(
+        {static_cast<float>(known), static_cast<float>(against), static_cast<float>(refuted)});
     evidence.known += known;
     evidence.against += against;
-    evidence.refuted += scale * cell.refuted;
+    evidence.refuted += refuted;
   }
   return evidence;
 }

@@ -62,10 +62,10 @@ class Witnesses {
 /// What patches of one cloud say for a pose, cell by cell: a cell counts once however many patches it has, so
 /// that much that has moved in one place, or a wall that fits everywhere, is one voice.
 struct Evidence {
-  /// How much of a cell the other cloud tells something of, from 0 to 1, and how much of that speaks against
-  /// the pose.
+  /// How much of a cell the other cloud tells something of, from 0 to 1, how much of that speaks against the
+  /// pose, and how much is refuted.
   struct Cell {
-    float known = 0.0F, against = 0.0F;
+    float known = 0.0F, against = 0.0F, refuted = 0.0F;
   };
   Agreement::Counts counts;  ///< of patches
   std::vector<Cell> cells;

@@ -1,6 +1,7 @@
 #include "bend_fit.h"
 #include "bent_source.h"
 #include "fine.h"
+#include "ground.h"
 #include "hypotheses.h"
 
 #include <raycloud/align/clouds.h>
@@ -8,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -92,19 +94,78 @@ void add_aside(const Context& context, const Known& cloud, const Known& referenc
   sort_by_score(all);
 }
 
+/// The turn about a horizontal axis that brings `up` upright.
+Eigen::Matrix3d upright(const Eigen::Vector3d& up) {
+  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// The rotation that levels the floors of a cloud, if there are any.
+Eigen::Matrix3d level_by_floors(const Known& known) {
+  constexpr double kMostTilt = 0.3;  // rad
+  return levelling(floor_patches(known.fine, kMostTilt)).value_or(Eigen::Matrix3d::Identity());
+}
+
+/// The best `kKept` of a search with these verticals, fitted.
+std::vector<Hypothesis> search(const Context& context, const Known& cloud, const Known& reference,
+                               const Jury& jury, const Verticals& verticals) {
+  constexpr std::size_t kKept = 24;
+  std::vector<Hypothesis> found = rough_hypotheses(context, cloud, reference, verticals);
+  found.resize(std::min(found.size(), kKept));
+  return fitted(context, cloud, reference, jury, std::move(found));
+}
+
+/// Whether a pose brings one vertical onto the other.
+bool fits_verticals(const Pose& pose, const Verticals& verticals) {
+  constexpr double kTilt = 0.02;  // rad
+  const Eigen::Vector3d up = pose.rotation * verticals.cloud.transpose() * Eigen::Vector3d::UnitZ();
+  return up.dot(verticals.reference.transpose() * Eigen::Vector3d::UnitZ()) > std::cos(kTilt);
+}
+
+/// The search turns the cloud about the vertical, and so finds little if one of the clouds is tilted. Where
+/// what it found is tilted or refuted, it is made again with the floors of both level, and then as the best
+/// tilts them.
+void search_tilted(const Context& context, const Known& cloud, const Known& reference, const Jury& jury,
+                   std::vector<Hypothesis>& all) {
+  std::vector<Verticals> searched{Verticals()};
+  const auto is_searched = [&](const Pose& pose) {
+    return std::any_of(searched.begin(), searched.end(),
+                       [&](const Verticals& one) { return fits_verticals(pose, one); });
+  };
+  const auto is_found = [&] {
+    const Hypothesis& best = all.front();
+    return !best.is_idle() && !best.is_refuted() && is_searched(best.pose);
+  };
+  const auto add = [&](const Verticals& verticals) {
+    const std::vector<Hypothesis> more = search(context, cloud, reference, jury, verticals);
+    all.insert(all.end(), more.begin(), more.end());
+    sort_by_score(all);
+    searched.push_back(verticals);
+  };
+  if (is_found()) return;
+  const Verticals floors{level_by_floors(cloud), level_by_floors(reference)}, none;
+  const auto is_upright = [&](const Eigen::Matrix3d& rotation) {
+    return fits_verticals({rotation, {}}, none);
+  };
+  if (!is_upright(floors.cloud) || !is_upright(floors.reference)) add(floors);
+  if (!is_found() && !is_searched(all.front().pose))
+    add({upright(all.front().pose.rotation.transpose() * Eigen::Vector3d::UnitZ()), none.reference});
+}
+
 /// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
 /// are looked for too, and those beside the best of all until there is no better.
 std::vector<Hypothesis> judge(const Context& context, const Known& cloud, const Known& reference,
                               const Jury& jury, bool local) {
-  constexpr std::size_t kKept = 24, kBeside = 3;
+  constexpr std::size_t kBeside = 3;
   constexpr int kRounds = 3;
   constexpr double kFarBelow = 20.0;  // cells
   std::vector<Hypothesis> all;
-  if (!local) all = rough_hypotheses(context, cloud, reference);
-  all.resize(std::min(all.size(), kKept));
+  if (!local) all = search(context, cloud, reference, jury, Verticals());
   const Eigen::Vector3d as_they_are = cloud.surfaces.survey.origin - reference.surfaces.survey.origin;
-  all.push_back({{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0});
-  all = fitted(context, cloud, reference, jury, std::move(all));
+  const std::vector<Hypothesis> here =
+      fitted(context, cloud, reference, jury, {{{Eigen::Matrix3d::Identity(), as_they_are}, {}, {}, 0.0}});
+  all.insert(all.end(), here.begin(), here.end());
+  sort_by_score(all);
+  if (!local) search_tilted(context, cloud, reference, jury, all);
   std::vector<Pose> looked;
   const auto is_looked = [&](const Hypothesis& one) {
     return std::any_of(looked.begin(), looked.end(),
@@ -130,15 +191,22 @@ struct Doubt {
   bool is_elsewhere = false;  ///< another place is as good
 };
 
+/// So near each other (a few metres) that narrow patches tell which is right, if anything does.
+bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
+  constexpr double kFar = 6.0;   // widths
+  constexpr double kTurn = 0.1;  // rad
+  return (a.translation - b.translation).norm() < kFar * cloud.fine.width() &&
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() < kTurn;
+}
+
 /// Others are rivals wherever they came to lie elsewhere, however near.
-Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud) {
+Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud,
+               const Jury& jury) {
   constexpr double kSigmas = 2.0;
-  constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
-  constexpr double kLess = 0.5;          // of the score of the best, for others to be rivals
   const Hypothesis& best = judged.front();
   const std::string found = "the best overlap found is " + percent(best.overlap());
   if (best.is_idle()) return {"too few surfaces are in both: " + found};
-  if (best.refuted_share() > kMostRefuted && !best.is_refuted_by_one_only())
+  if (best.is_refuted())
     return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
   const auto is_elsewhere = [&](const Pose& pose) {
@@ -146,9 +214,21 @@ Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Kn
     return (pose.translation - best.pose.translation).norm() > kApart * cloud.fine.width() ||
            !is_same_place(pose, best.pose, cloud);
   };
+  const auto has_score = [&](const Hypothesis& other) {
+    constexpr double kLess = 0.5;        // of the score of the best, for others to be rivals
+    constexpr double kLessKnown = 0.03;  // or of what is known of it
+    return other.score > best.score - std::max(kLess * std::abs(best.score),
+                                               kLessKnown * (best.there.known + best.back.known));
+  };
+  // Where little is in both, much of that is edges, and apart: far away, what is refuted must tell, too.
+  const auto is_worse = [&](const Hypothesis& other) {
+    const bool is_less = sigmas_worse(other, best) >= kSigmas;
+    return is_near(other.pose, best.pose, cloud)
+               ? is_less || jury.sigmas_worse_closely(other, best) >= kSigmas
+               : is_less && sigmas_more_refuted(other, best) >= kSigmas;
+  };
   const auto is_rival = [&](const Hypothesis& other) {
-    return is_elsewhere(other.pose) && !other.is_idle() &&
-           other.score > best.score - kLess * std::abs(best.score) && sigmas_worse(other, best) < kSigmas;
+    return is_elsewhere(other.pose) && !other.is_idle() && has_score(other) && !is_worse(other);
   };
   const auto is_far = [&](const Hypothesis& other) { return !is_same_place(other.pose, best.pose, cloud); };
   const auto is_far_rival = [&](const Hypothesis& other) { return is_far(other) && is_rival(other); };
@@ -186,7 +266,7 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud);
+  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud, jury);
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;

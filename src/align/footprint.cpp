@@ -32,7 +32,7 @@ void splat(Image& image, std::size_t side, float x, float y, std::complex<float>
 
 }  // namespace
 
-Footprint footprint_of(const PatchLevel& level) {
+Footprint footprint_of(const std::vector<Patch>& patches, double width) {
   constexpr float kFull = 4.0F;  // patches above each other
   struct Column {
     Eigen::Vector2d place = Eigen::Vector2d::Zero();
@@ -40,9 +40,9 @@ Footprint footprint_of(const PatchLevel& level) {
     double uprights = 0.0, patches = 0.0;
   };
   std::map<std::pair<int, int>, Column> columns;
-  for (const Patch& patch : level.patches()) {
+  for (const Patch& patch : patches) {
     if (patch.is_level()) continue;
-    const Eigen::Array2d cell = (patch.mean.head<2>().array() / level.width()).floor();
+    const Eigen::Array2d cell = (patch.mean.head<2>().array() / width).floor();
     Column& column = columns[{static_cast<int>(cell.x()), static_cast<int>(cell.y())}];
     column.place += patch.mean.head<2>();
     column.patches += 1.0;
@@ -60,7 +60,7 @@ Footprint footprint_of(const PatchLevel& level) {
   const auto [middle_x, reach_x] = middle_and_reach(std::move(x));
   const auto [middle_y, reach_y] = middle_and_reach(std::move(y));
   footprint.centre = {middle_x, middle_y};
-  footprint.radius = std::hypot(reach_x, reach_y) + level.width();
+  footprint.radius = std::hypot(reach_x, reach_y) + width;
   for (const auto& [cell, column] : columns) {
     Feature feature;
     feature.place = (column.place - footprint.centre).cast<float>();

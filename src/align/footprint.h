@@ -17,12 +17,13 @@ struct Feature {
 };
 
 struct Footprint {
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m, from the origin of the surfaces
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m, from the origin of the patches
   double radius = 0.0;                               ///< m, of the circle that holds nearly all features
   std::vector<Feature> features;
 };
 
-[[nodiscard]] Footprint footprint_of(const PatchLevel& level);
+/// Of a cloud's patches.
+[[nodiscard]] Footprint footprint_of(const std::vector<Patch>& patches, double width);
 
 /// Two images of a footprint turned by `yaw` (rad): the headings, as complex numbers, and the heights.
 struct Rasters {

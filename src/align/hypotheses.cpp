@@ -54,9 +54,19 @@ std::vector<Hypothesis> without_twins(const std::vector<Hypothesis>& hypotheses,
   return distinct;
 }
 
-Pose pose_of(const Candidate& candidate, double rise) {
-  return {Eigen::AngleAxisd(candidate.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-          {candidate.shift.x(), candidate.shift.y(), rise}};
+Pose pose_of(const Candidate& candidate, double rise, const Verticals& verticals) {
+  const Eigen::Matrix3d back = verticals.reference.transpose();
+  return {back * Eigen::AngleAxisd(candidate.yaw, Eigen::Vector3d::UnitZ()) * verticals.cloud,
+          back * Eigen::Vector3d(candidate.shift.x(), candidate.shift.y(), rise)};
+}
+
+std::vector<Patch> turned(std::vector<Patch> patches, const Eigen::Matrix3d& rotation) {
+  for (Patch& patch : patches) {
+    patch.mean = rotation * patch.mean;
+    patch.normal = rotation * patch.normal;
+    patch.along = rotation * patch.along;
+  }
+  return patches;
 }
 
 /// Of a grid of shifts around a pose, half a width apart, the best, no two next to each other.
@@ -88,17 +98,23 @@ std::vector<Hypothesis> small_shifts(const Context& context, const Pose& pose, d
 
 /// The best of all candidates at all heights, at a glance.
 std::vector<Hypothesis> promising_of(const Context& context, const Known& cloud, const Known& reference,
-                                     std::span<const Candidate> candidates) {
+                                     const Verticals& verticals) {
+  constexpr std::size_t kCandidates = 2500;
   constexpr std::size_t kRises = 3, kGlanced = 150, kPromising = 200, kLevels = 1000;
-  const LevelHeights heights(reference.fine);
-  const std::vector<Patch> levels = level_patches(cloud.fine, kLevels);
+  const std::vector<Patch> from = turned(cloud.fine.patches(), verticals.cloud),
+                           onto = turned(reference.fine.patches(), verticals.reference);
+  const std::vector<Candidate> candidates =
+      find_candidates(context, footprint_of(from, cloud.fine.width()),
+                      footprint_of(onto, reference.fine.width()), kCandidates);
+  const LevelHeights heights(onto, reference.fine.width());
+  const std::vector<Patch> levels = level_patches(from, kLevels);
   const std::vector<JudgedPatch> glanced = judged_patches(cloud.fine, kGlanced);
   const double tolerance = 2.0 * tolerance_of(cloud, reference);
   std::vector<std::vector<Hypothesis>> of_candidate(candidates.size());
   parallel_for(context, candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (const double rise : heights.rises(levels, candidates[i], kRises)) {
-        const Pose pose = pose_of(candidates[i], rise);
+        const Pose pose = pose_of(candidates[i], rise, verticals);
         const Agreement there = agreement_of(glanced, pose, {reference.fine, reference.free}, tolerance);
         of_candidate[i].push_back({pose, {}, {}, score_of(there, kAgainstAtFirst)});
       }
@@ -141,12 +157,10 @@ void sort_by_score(std::vector<Hypothesis>& hypotheses) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
 }
 
-std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud, const Known& reference) {
-  constexpr std::size_t kCandidates = 2500;
-  const std::vector<Candidate> candidates =
-      find_candidates(context, footprint_of(cloud.fine), footprint_of(reference.fine), kCandidates);
+std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud, const Known& reference,
+                                         const Verticals& verticals) {
   std::vector<Hypothesis> hypotheses =
-      roughly_fitted(context, cloud, reference, promising_of(context, cloud, reference, candidates));
+      roughly_fitted(context, cloud, reference, promising_of(context, cloud, reference, verticals));
   return distinct_of(hypotheses, cloud);
 }
 

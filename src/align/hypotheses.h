@@ -11,9 +11,15 @@ namespace ray::align {
 
 void sort_by_score(std::vector<Hypothesis>& hypotheses);
 
+/// The rotations that turn the vertical of either cloud upright, before one is turned about it onto the
+/// other.
+struct Verticals {
+  Eigen::Matrix3d cloud = Eigen::Matrix3d::Identity(), reference = Eigen::Matrix3d::Identity();
+};
+
 /// Poses from all candidates, roughly fitted, distinct, the best first.
 [[nodiscard]] std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud,
-                                                       const Known& reference);
+                                                       const Known& reference, const Verticals& verticals);
 
 /// The given ones fitted with all six degrees of freedom and judged from both sides, the best first.
 [[nodiscard]] std::vector<Hypothesis> fitted(const Context& context, const Known& cloud,

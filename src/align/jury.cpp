@@ -12,6 +12,29 @@ Pose inverse_of(const Pose& pose) {
   return {pose.rotation.transpose(), -(pose.rotation.transpose() * pose.translation)};
 }
 
+/// By how many standard errors there is more of `what` in the cells of a pose than is usual under the best
+/// one, in which there is `in_best` of it.
+double sigmas_more(float Evidence::Cell::*what, double in_best, const Hypothesis& other,
+                   const Hypothesis& best, double least_share) {
+  const double known = best.there.known + best.back.known;
+  const double usual = known > 0.0 ? in_best / known : 0.0;
+  const auto excess = [&](const Evidence::Cell& cell) {
+    return static_cast<double>(cell.*what) - usual * static_cast<double>(cell.known);
+  };
+  double sum = 0.0, squares = 0.0;
+  const auto add = [&](const Evidence& a, const Evidence& b) {
+    for (std::size_t i = 0; i < a.cells.size(); ++i) {
+      const double difference = excess(a.cells[i]) - excess(b.cells[i]);
+      sum += difference;
+      squares += difference * difference;
+    }
+  };
+  add(other.there, best.there);
+  add(other.back, best.back);
+  // Noise alone is significant where it is the same everywhere.
+  return sum > least_share * known ? sum / std::sqrt(squares) : 0.0;
+}
+
 }  // namespace
 
 Known::Known(const Context& context, Surfaces gathered)
@@ -57,7 +80,9 @@ Jury::Jury(const Known& cloud, const Known& reference)
       there_(cloud.fine, kJudged),
       back_(reference.fine, kJudged),
       few_there_(cloud.fine, kGlanced),
-      few_back_(reference.fine, kGlanced) {}
+      few_back_(reference.fine, kGlanced),
+      narrow_there_(cloud.narrow, kJudged),
+      narrow_back_(reference.narrow, kJudged) {}
 
 void Jury::judge(Hypothesis& one) const {
   one.there = evidence_of(there_, one.pose, {reference_.fine, reference_.free}, tolerance_);
@@ -65,30 +90,31 @@ void Jury::judge(Hypothesis& one) const {
   one.score = one.is_idle() ? std::numeric_limits<double>::lowest() : one.there.sum() + one.back.sum();
 }
 
+Hypothesis Jury::judged_closely(const Pose& pose) const {
+  const double tolerance = 0.5 * tolerance_;
+  return {pose, evidence_of(narrow_there_, pose, {reference_.narrow, reference_.free}, tolerance),
+          evidence_of(narrow_back_, inverse_of(pose), {cloud_.narrow, cloud_.free}, tolerance), 0.0};
+}
+
+double Jury::sigmas_worse_closely(const Hypothesis& other, const Hypothesis& best) const {
+  constexpr double kLeastShare = 0.005;
+  return sigmas_worse(judged_closely(other.pose), judged_closely(best.pose), kLeastShare);
+}
+
 double Jury::glance(const Pose& pose) const {
   return evidence_of(few_there_, pose, {reference_.fine, reference_.free}, tolerance_).sum() +
          evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
 }
 
-double sigmas_worse(const Hypothesis& other, const Hypothesis& best) {
-  const double known = best.there.known + best.back.known;
-  const double usual = known > 0.0 ? (best.there.against + best.back.against) / known : 0.0;
-  const auto excess = [usual](const Evidence::Cell& cell) {
-    return static_cast<double>(cell.against) - usual * static_cast<double>(cell.known);
-  };
-  double sum = 0.0, squares = 0.0;
-  const auto add = [&](const Evidence& a, const Evidence& b) {
-    for (std::size_t i = 0; i < a.cells.size(); ++i) {
-      const double difference = excess(a.cells[i]) - excess(b.cells[i]);
-      sum += difference;
-      squares += difference * difference;
-    }
-  };
-  add(other.there, best.there);
-  add(other.back, best.back);
-  // Noise alone is significant where it is the same everywhere.
+double sigmas_worse(const Hypothesis& other, const Hypothesis& best, double least_share) {
+  return sigmas_more(&Evidence::Cell::against, best.there.against + best.back.against, other, best,
+                     least_share);
+}
+
+double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best) {
   constexpr double kLeastShare = 0.01;
-  return sum > kLeastShare * known ? sum / std::sqrt(squares) : 0.0;
+  return sigmas_more(&Evidence::Cell::refuted, best.there.refuted + best.back.refuted, other, best,
+                     kLeastShare);
 }
 
 }  // namespace ray::align

@@ -41,11 +41,19 @@ struct Hypothesis {
   /// One cloud has much that is not in the other, and the other nearly nothing that is not in it: leaves,
   /// snow, or furniture. Of a wrong pose both have.
   [[nodiscard]] bool is_refuted_by_one_only() const;
+  [[nodiscard]] bool is_refuted() const {
+    constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
+    return refuted_share() > kMostRefuted && !is_refuted_by_one_only();
+  }
 };
 
 /// By how many standard errors more speaks against a pose than is usual under the best one, if cells are
-/// independent of each other. That the best overlaps more tells nothing.
-[[nodiscard]] double sigmas_worse(const Hypothesis& other, const Hypothesis& best);
+/// independent of each other; 0 where that is less than `least_share` of what is known. That the best
+/// overlaps more tells nothing.
+[[nodiscard]] double sigmas_worse(const Hypothesis& other, const Hypothesis& best, double least_share = 0.01);
+
+/// The same of what is refuted alone.
+[[nodiscard]] double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best);
 
 /// Judges poses from both sides, by an even choice of the patches of either cloud.
 class Jury {
@@ -54,15 +62,21 @@ class Jury {
 
   /// Scores a pose by the evidence of both sides. Where next to nothing is in both it is the lowest score.
   void judge(Hypothesis& one) const;
+  /// `sigmas_worse` of two poses near each other, by surfaces in cubes half as wide: what tells them apart is
+  /// within a patch.
+  [[nodiscard]] double sigmas_worse_closely(const Hypothesis& other, const Hypothesis& best) const;
   /// The score of a pose by an eighth of the witnesses.
   [[nodiscard]] double glance(const Pose& pose) const;
 
  private:
+  /// The evidence of both sides by narrow patches.
+  [[nodiscard]] Hypothesis judged_closely(const Pose& pose) const;
+
   static constexpr std::size_t kJudged = 8000, kGlanced = 1000;  // of each cloud
   const Known& cloud_;
   const Known& reference_;
   double tolerance_;
-  Witnesses there_, back_, few_there_, few_back_;
+  Witnesses there_, back_, few_there_, few_back_, narrow_there_, narrow_back_;
 };
 
 /// Whether two poses put a cloud to the same place, within the width of a patch.

@@ -8,16 +8,16 @@
 
 namespace ray::align {
 
-std::vector<Patch> level_patches(const PatchLevel& level, std::size_t most) {
+std::vector<Patch> level_patches(const std::vector<Patch>& patches, std::size_t most) {
   std::vector<Patch> chosen;
-  for (const Patch& patch : level.patches())
+  for (const Patch& patch : patches)
     if (patch.is_flat() && patch.is_level()) chosen.push_back(patch);
   constexpr std::size_t kFew = 50;
-  return some_of(chosen.size() < kFew ? level.patches() : chosen, most);
+  return some_of(chosen.size() < kFew ? patches : chosen, most);
 }
 
-LevelHeights::LevelHeights(const PatchLevel& level) : width_(2.0 * level.width()) {
-  for (const Patch& patch : level_patches(level, level.patches().size()))
+LevelHeights::LevelHeights(const std::vector<Patch>& patches, double width) : width_(2.0 * width) {
+  for (const Patch& patch : level_patches(patches, patches.size()))
     heights_.push_back(
         {column_of(patch.mean.head<2>()), static_cast<float>(patch.mean.z()), patch.normal.z() > 0.0});
   std::stable_sort(heights_.begin(), heights_.end(),

@@ -13,7 +13,7 @@ namespace ray::align {
 /// The heights of level surfaces, by where they are.
 class LevelHeights {
  public:
-  explicit LevelHeights(const PatchLevel& level);
+  LevelHeights(const std::vector<Patch>& patches, double width);
 
   /// The most frequent differences (m) between a level surface of the reference and one of the cloud that is
   /// seen from the same side, above or below each other: at most `most`, the most frequent first.
@@ -33,6 +33,6 @@ class LevelHeights {
 };
 
 /// Those patches that have a height to compare: level ones, or all where there are few.
-[[nodiscard]] std::vector<Patch> level_patches(const PatchLevel& level, std::size_t most);
+[[nodiscard]] std::vector<Patch> level_patches(const std::vector<Patch>& patches, std::size_t most);
 
 }  // namespace ray::align

@@ -90,6 +90,33 @@ TEST(AlignClouds, TiltedByTenDegrees) {
   expect_undone(found.pose, moved, room_scan(1), 0.05 * kDegree, 0.01);
 }
 
+Pose tilted_by_ten_degrees() {
+  Pose moved = moved_by(25.0, {10.0, -20.0, 0.5});
+  moved.rotation = rotation_pose({0.14, -0.1, 0.0}).rotation * moved.rotation;
+  return moved;
+}
+
+/// Storeys look alike: tilted, one lies on another long before the right one is found.
+TEST(AlignClouds, ABuildingTiltedByTenDegrees) {
+  RayCloud rays = building_scan(2);
+  const Pose moved = tilted_by_ten_degrees();
+  rays.transform(moved);
+  const CloudAlignment found = aligned_with(rays, building_scan(1));
+  EXPECT_EQ(found.doubt, "");
+  expect_undone(found.pose, moved, building_scan(2), 0.05 * kDegree, 0.02);
+}
+
+TEST(AlignClouds, OntoATiltedBuilding) {
+  const RayCloud rays = building_scan(2);
+  RayCloud reference = building_scan(1);
+  const Pose moved = tilted_by_ten_degrees();
+  reference.transform(moved);
+  const CloudAlignment found = aligned_with(rays, reference);
+  EXPECT_EQ(found.doubt, "");
+  const Eigen::Matrix3d back = found.pose.rotation.transpose();
+  expect_undone({back, -(back * found.pose.translation)}, moved, rays, 0.05 * kDegree, 0.02);
+}
+
 TEST(AlignClouds, DoubtsWhatNothingTells) {
   const RayCloud room = room_scan(1, 30'000);
   // A flat field lies on another anywhere; a room does not lie on a field at all.

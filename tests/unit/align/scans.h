@@ -24,6 +24,12 @@ inline RayCloud room_scan(std::uint64_t seed, std::uint64_t rays = 60'000) {
   return read_all({}, *simulate(scene, {.rays = rays, .seed = seed}));
 }
 
+/// A building of several storeys; another scan for each seed.
+inline RayCloud building_scan(std::uint64_t seed, std::uint64_t rays = 150'000) {
+  static const Scene scene = make_scene(SceneKind::building, 102);
+  return read_all({}, *simulate(scene, {.rays = rays, .seed = seed}));
+}
+
 /// A room of 8 m by 5 m and 3 m, seen from its middle, 1 cm of noise: the walls at x = 0 and y = 0 whole, the
 /// others in part; a table; the ground outside slopes away.
 inline RayCloud plain_room(std::uint64_t seed, std::size_t rays = 120'000) {
