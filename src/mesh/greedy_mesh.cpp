@@ -229,7 +229,7 @@ class GreedyMesh {
 
   [[nodiscard]] Mesh mesh() const {
     Mesh mesh;
-    mesh.faces = hull_->complex().finite_faces();
+    mesh.faces = hull_->complex().finite_faces(context_);
     std::vector<Index> number(points_.size(), kDone);
     for (Mesh::Face& face : mesh.faces) {
       for (std::uint32_t& vertex : face) {

@@ -9,6 +9,7 @@
 ///   static constexpr bool kInfinite   the last vertex is at infinity; faces that have it have it last
 
 #include <raycloud/core/mesh.h>
+#include <raycloud/exec/fresh_memory.h>
 
 #include <array>
 #include <cstdint>
@@ -44,6 +45,19 @@ class HullComplex {
     seen_.assign(4, 0);
     created_ = {0, 1, 2, 3};
     start_ = 3;
+  }
+
+  /// Lets all threads touch the memory that all points take, for who adds them all: one alone would wait for
+  /// it.
+  void make_room(const Context& context) {
+    std::vector<Face> faces;
+    reserve_touched(context, faces, faces_.capacity());
+    faces.assign(faces_.begin(), faces_.end());
+    faces_ = std::move(faces);
+    std::vector<std::uint32_t> seen;
+    reserve_touched(context, seen, seen_.capacity());
+    seen.assign(seen_.begin(), seen_.end());
+    seen_ = std::move(seen);
   }
 
   /// Adds point `p` if it is outside. The walk to it begins where the last point was added.
@@ -89,9 +103,9 @@ class HullComplex {
   }
 
   /// The faces, without those at infinity, by place.
-  [[nodiscard]] std::vector<Mesh::Face> finite_faces() const {
+  [[nodiscard]] std::vector<Mesh::Face> finite_faces(const Context& context = {}) const {
     std::vector<Mesh::Face> faces;
-    faces.reserve(faces_.size());
+    reserve_touched(context, faces, faces_.size());
     for (Index at = 0; at < faces_.size(); ++at)
       if (is_alive(at) && !is_infinite(at)) faces.push_back(faces_[at].vertices);
     return faces;

@@ -52,7 +52,8 @@ bool LowerHull::find_first() {
   return false;
 }
 
-void LowerHull::insert_all() {
+void LowerHull::insert_all(const Context& context) {
+  complex_->make_room(context);
   for (const Index i : order_)
     complex_->insert(i);
 }

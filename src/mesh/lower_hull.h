@@ -68,7 +68,7 @@ class LowerHull {
   LowerHull& operator=(const LowerHull&) = delete;
 
   /// About 1 µs a point. Of points at one place of the plan that are as low, the first counts.
-  void insert_all();
+  void insert_all(const Context& context);
 
   [[nodiscard]] HullComplex<PlanGeometry>& complex() { return *complex_; }
   [[nodiscard]] const HullComplex<PlanGeometry>& complex() const { return *complex_; }

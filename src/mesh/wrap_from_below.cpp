@@ -93,11 +93,11 @@ std::vector<PlanPoint> lowest_of_cells(const Context& context, RaySource& source
 }
 
 /// What lies above this lies above the hull of a few of the ends, and so of all.
-ConvexCeiling ceiling_of(std::vector<PlanPoint> few, std::size_t sides) {
+ConvexCeiling ceiling_of(const Context& context, std::vector<PlanPoint> few, std::size_t sides) {
   ConvexCeiling ceiling(sides);
   const auto hull = LowerHull::make(std::move(few));
   if (hull == nullptr) return ceiling;
-  hull->insert_all();
+  hull->insert_all(context);
   for (std::size_t row = 0; row <= sides; ++row) {
     for (std::size_t i = 0; i <= sides; ++i) {
       const std::size_t column = row % 2 == 0 ? i : sides - i;  // to and fro: each is near the one before
@@ -159,7 +159,8 @@ struct SortedEnds {
 
 /// Each near the one before, as the hull wants them; those at one place in the order of the rays.
 SortedEnds along_curve(const Context& context, const LiftedEnds& lifted) {
-  std::vector<std::uint64_t> keys(lifted.ends.size());  // the place above, the index below
+  // The place above, the index below.
+  std::vector<std::uint64_t> keys = touched_vector<std::uint64_t>(context, lifted.ends.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
     keys[i] = std::uint64_t{lifted.curve[i]} << 32 | i;
   parallel_sort(context, keys.begin(), keys.end(), std::less<>());
@@ -192,9 +193,9 @@ std::vector<std::uint8_t> touched_ends(const Context& context, const std::vector
 Mesh mesh_of(const Context& context, const LowerHull& hull, const std::vector<double>& heights,
              const Lift& lift) {
   Mesh mesh;
-  mesh.faces = hull.complex().finite_faces();
+  mesh.faces = hull.complex().finite_faces(context);
   const std::vector<std::uint8_t> touched = touched_ends(context, mesh.faces, heights.size());
-  std::vector<std::uint32_t> number(heights.size());
+  std::vector<std::uint32_t> number = touched_vector<std::uint32_t>(context, heights.size());
   std::exclusive_scan(touched.begin(), touched.end(), number.begin(), 0u);
   mesh.vertices = touched_vector<Eigen::Vector3d>(context, number.back() + std::size_t{touched.back()});
   parallel_for(context, heights.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -218,12 +219,12 @@ Wrap wrap_from_below(const Context& context, RaySource& source, const EndsSurvey
       static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(survey.bounded) / 16.0), 1.0, 512.0));
   std::vector<PlanPoint> lowest = lowest_of_cells(context, source, lift, sides);
   source.rewind();
-  const ConvexCeiling ceiling = ceiling_of(std::move(lowest), 2 * sides);
+  const ConvexCeiling ceiling = ceiling_of(context, std::move(lowest), 2 * sides);
   SortedEnds ends = along_curve(context, below(context, source, lift, ceiling, survey.bounded));
   const auto hull = LowerHull::make_along_curve(std::move(ends.points));
   if (hull == nullptr) throw Error(ErrorCode::no_data, "all ends are on one line of the map");
   check_cancelled(context);
-  hull->insert_all();
+  hull->insert_all(context);
   return {.mesh = mesh_of(context, *hull, ends.heights, lift),
           .stream = survey.stream,
           .bounded = survey.bounded};
