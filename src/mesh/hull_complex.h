@@ -33,9 +33,6 @@ class HullComplex {
   HullComplex(const Geometry& geometry, std::size_t vertices, std::array<Index, 4> first)
       : geometry_(geometry), fan_(vertices) {
     const auto [a, b, c, d] = first;
-    // As many as there can be: what is not used is never touched, and what grows would be copied.
-    faces_.reserve(2 * vertices);
-    seen_.reserve(2 * vertices);
     // Each face lacks one of the four.
     faces_ = {{{b, a, d}, {}}, {{c, b, d}, {}}, {{a, c, d}, {}}, {{a, b, c}, {}}};
     faces_[0].neighbours = {2, 1, 3};
@@ -47,15 +44,14 @@ class HullComplex {
     start_ = 3;
   }
 
-  /// Lets all threads touch the memory that all points take, for who adds them all: one alone would wait for
-  /// it.
+  /// Has the memory that all points take ready, touched by all threads: for who adds them all.
   void make_room(const Context& context) {
     std::vector<Face> faces;
-    reserve_touched(context, faces, faces_.capacity());
+    reserve_touched(context, faces, 2 * fan_.size());
     faces.assign(faces_.begin(), faces_.end());
     faces_ = std::move(faces);
     std::vector<std::uint32_t> seen;
-    reserve_touched(context, seen, seen_.capacity());
+    reserve_touched(context, seen, 2 * fan_.size());
     seen.assign(seen_.begin(), seen_.end());
     seen_ = std::move(seen);
   }

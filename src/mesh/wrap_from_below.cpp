@@ -129,8 +129,11 @@ struct LiftedEnds {
 LiftedEnds below(const Context& context, RaySource& source, const Lift& lift, const ConvexCeiling& ceiling,
                  std::uint64_t bounded) {
   LiftedEnds all;
-  all.ends.reserve(bounded);  // what is not used is never touched, and what grows would be copied
-  all.curve.reserve(bounded);
+  // What grows is copied. But of a huge cloud most ends may be above the ceiling, and its memory is not ours.
+  constexpr std::uint64_t kMostAtOnce = 1 << 22;
+  const auto room = static_cast<std::size_t>(std::min(bounded, kMostAtOnce));
+  all.ends.reserve(room);
+  all.curve.reserve(room);
   stream(
       context, source, nullptr,
       [&](RayCloud& rays) {

@@ -61,7 +61,7 @@ class EllipsoidTree {
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
     std::array<std::array<float, kPack>, 3> centre;
     std::array<std::array<float, kPack>, 6> shape;
-    double unused = 0.0;
+    double padding = 0.0;
   };
   /// Of eight packs, or eight boxes, relative to `origin_`.
   struct Boxes {
