@@ -4,6 +4,8 @@ target_compile_options(raycloud_build INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
   # Options structs are initialised by name; members left out keep their defaults.
   -Wno-missing-field-initializers
+  # Functions that take or give vectors of lanes are all inlined; none is called from elsewhere.
+  -Wno-psabi
   # GCC sees overlapping copies and unset members inside its own std::string where there are none
   # (GCC bug 105651 and its kin).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-stringop-overread

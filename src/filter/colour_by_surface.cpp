@@ -113,14 +113,22 @@ std::vector<SurfaceColour> colour_block(const Context& context, Block<SeenPoint>
                                  unpack_direction(normals[place]));
   };
   NeededPlaces(block, tree)
-      .work_on(context, lit ? 1 : 0,
-               [&](NeighbourSearch& search, std::size_t place) {
-                 const std::uint32_t index = tree.index(place);
-                 if (rule.colour != nullptr && block.is_own(index))
-                   colours[index] = rule.colour(surfel_at(search, place, own_rule));
-                 if (lit) normals[place] = pack_direction(surfel_at(search, place, lit_rule).normal);
-               },
-               {.radius = [&](std::size_t) { return neighbour_reach; }, .neighbours = lit_neighbours});
+      .work_on(
+          context, lit ? 1 : 0,
+          [&](NeighbourSearch& search, std::size_t begin, std::size_t end, const auto& wanted) {
+            const auto is_coloured = [&](std::size_t place) {
+              return wanted(place) && block.is_own(tree.index(place));
+            };
+            if (rule.colour != nullptr)
+              SurfelFinder(search, own_rule).for_each(begin, end, is_coloured, [&](const SurfelOf& found) {
+                colours[tree.index(found.place)] = rule.colour(found.surfel);
+              });
+            if (lit)
+              SurfelFinder(search, lit_rule).for_each(begin, end, wanted, [&](const SurfelOf& found) {
+                normals[found.place] = pack_direction(found.surfel.normal);
+              });
+          },
+          {.radius = [&](std::size_t) { return neighbour_reach; }, .neighbours = lit_neighbours});
   if (!lit) return colours;
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -68,16 +69,15 @@ class BlockJudge {
 
   void judge_range(NeighbourSearch& search, std::size_t begin, std::size_t end) {
     std::vector<Asking> asking;
-    for (std::size_t place = begin; place < end; ++place) {
-      if (!block_.is_own(tree_.index(place))) continue;
-      const std::span<const Neighbour> nearest = find_plane(search, place);
-      if (is_settled(place)) continue;
-      const std::optional<Asking> asks = asking_of(place, nearest);
+    const auto is_own = [&](std::size_t place) { return block_.is_own(tree_.index(place)); };
+    find_planes(search, begin, end, is_own, [&](const SurfelOf& found) {
+      if (is_settled(found.place)) return;
+      const std::optional<Asking> asks = asking_of(found.place, *found.around);
       if (asks && are_own_of_range(asks->neighbours(), begin, end))
         asking.push_back(*asks);
       else
-        open_[place] = Open::kVerdict;
-    }
+        open_[found.place] = Open::kVerdict;
+    });
     for (const Asking& one : asking)
       judge(one.place, one.neighbours());
   }
@@ -89,11 +89,15 @@ class BlockJudge {
     });
   }
 
-  /// Returns what is known of the nearest neighbours.
-  std::span<const Neighbour> find_plane(NeighbourSearch& search, std::size_t place) {
-    const auto [surfel, nearest] = surfel_and_nearest(search, place, {kSurfaceNeighbours, reach_, true});
-    planes_[place] = noisy_plane(tree_, place, surfel);
-    return nearest;
+  /// `then` is told what is known of the nearest neighbours.
+  template <class Wanted, class Then>
+  void find_planes(NeighbourSearch& search, std::size_t begin, std::size_t end, const Wanted& wanted,
+                   const Then& then) {
+    SurfelFinder finder(search, {kSurfaceNeighbours, reach_, true});
+    finder.for_each(begin, end, wanted, [&](const SurfelOf& found) {
+      planes_[found.place] = noisy_plane(tree_, found.place, found.surfel);
+      then(found);
+    });
   }
 
   /// Gives a verdict where there is no need to ask the neighbours. True if so.
@@ -109,24 +113,18 @@ class BlockJudge {
   }
 
   /// The same as neighbours_of finds, from the nearest of any side. None if these are too few to tell.
-  std::optional<Asking> asking_of(std::size_t place, std::span<const Neighbour> nearest) const {
+  std::optional<Asking> asking_of(std::size_t place, const Neighbourhood& around) const {
     const NoisyPlane& plane = planes_[place];
     if (plane.normal.isZero()) return {};
-    const Eigen::Vector3d side = plane.normal.cast<double>();
     const double reach2 = static_cast<double>(plane.reach) * static_cast<double>(plane.reach);
-    std::array<Neighbour, NeighbourSearch::kMost> facing;
-    std::size_t count = 0;
-    double furthest2 = 0.0;
-    for (const Neighbour& neighbour : nearest) {
-      furthest2 = std::max(furthest2, neighbour.distance2);
-      facing[count] = neighbour;
-      count += is_seen_from(side, tree_.to_sensor(neighbour.place)) ? 1 : 0;
-    }
-    if (count < kSurfaceNeighbours && furthest2 <= reach2) return {};
-    count = keep_nearest(tree_, {facing.data(), count}, kSurfaceNeighbours);
+    const Neighbourhood::Some facing = around.seen_from(plane.normal.cast<double>());
+    const auto count = static_cast<std::size_t>(std::popcount(facing));
+    if (count < kSurfaceNeighbours && around.furthest2() <= reach2) return {};
     Asking asking{place, 0, {}};
-    for (std::size_t i = 0; i < count; ++i)
-      if (facing[i].distance2 <= reach2) asking.all[asking.count++] = facing[i];
+    for (Neighbourhood::Some some = around.nearest(facing, kSurfaceNeighbours); some != 0; some &= some - 1) {
+      const Neighbour neighbour = around.neighbour(static_cast<std::size_t>(std::countr_zero(some)));
+      if (neighbour.distance2 <= reach2) asking.all[asking.count++] = neighbour;
+    }
     return asking;
   }
 
@@ -151,8 +149,9 @@ class BlockJudge {
       }
     });
     for_each_place(context_, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-      for (std::size_t place = begin; place < end; ++place)
-        if (open_[place] == Open::kPlane) find_plane(search, place);
+      find_planes(
+          search, begin, end, [&](std::size_t place) { return open_[place] == Open::kPlane; },
+          [](const SurfelOf&) {});
     });
   }
 

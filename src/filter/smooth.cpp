@@ -61,9 +61,11 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   NeededPlaces(block, tree)
       .work_on(
           context, 1,
-          [&](NeighbourSearch& search, std::size_t place) {
-            planes[place] = plane_of(
-                tree, place, surfel_at(search, place, {kSurfaceNeighbours, reach / (1.0 + kWider), true}));
+          [&](NeighbourSearch& search, std::size_t begin, std::size_t end, const auto& wanted) {
+            SurfelFinder finder(search, {kSurfaceNeighbours, reach / (1.0 + kWider), true});
+            finder.for_each(begin, end, wanted, [&](const SurfelOf& found) {
+              planes[found.place] = plane_of(tree, found.place, found.surfel);
+            });
           },
           {.radius = [&](std::size_t place) { return kWider * static_cast<double>(planes[place].reach); },
            .neighbours = neighbours_of});

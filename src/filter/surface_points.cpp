@@ -44,8 +44,7 @@ void NeededPlaces::work_on(const Context& context, std::uint8_t rings, const Wor
 
 void NeededPlaces::work_on_ring(const Context& context, std::uint8_t ring, const Work& work) {
   for_each_place(context, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
-    for (std::size_t place = begin; place < end; ++place)
-      if (ring_.empty() || ring_[place] == ring) work(search, place);
+    work(search, begin, end, [&](std::size_t place) { return ring_.empty() || ring_[place] == ring; });
   });
 }
 

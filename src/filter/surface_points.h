@@ -35,7 +35,10 @@ void for_each_place(const Context& context, const PointTree& tree,
 /// block lies within reach but is nobody's neighbour.
 class NeededPlaces {
  public:
-  using Work = std::function<void(NeighbourSearch&, std::size_t place)>;
+  /// Work on those places from begin to end that are `wanted`.
+  using Wanted = std::function<bool(std::size_t place)>;
+  using Work =
+      std::function<void(NeighbourSearch&, std::size_t begin, std::size_t end, const Wanted& wanted)>;
 
   NeededPlaces(const Block<SeenPoint>& block, const PointTree& tree);
 

@@ -16,51 +16,12 @@ class NeighbourSearch::Impl {
  public:
   explicit Impl(const PointTree& tree) : walk_(tree), around_(tree) {}
 
-  /// Who is wont to ask for the nearest of a place and then for more of them gets both from one search.
-  std::span<const Neighbour> nearest(std::size_t place, std::size_t count, double reach) {
-    const bool again = more_.count > 0 && place == more_.place && reach == more_.reach;
-    if (!again) more_.begin(place, count, reach);
-    if (count > more_.first) more_.usual = count, more_.is_asked = true;
-    if (again && count <= more_.count) return of_more(count);
-    more_.count = more_.is_usual() ? std::max(count, more_.usual) : count;
-    more_.found = search(place, more_.count, reach, nullptr);
-    return of_more(count);
-  }
-  std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
-                                            const Eigen::Vector3d& side) {
-    more_.count = 0;
-    return search(place, count, reach, &side);
-  }
-
-  PlacesInside inside(std::size_t place, const SearchedBody& body) {
-    more_.count = 0;
-    go_to(place);
-    const Eigen::Vector3d half = half_extent(body.shape);
-    if (around_.has(place)) {
-      const double furthest = around_.furthest(body.centre, half);
-      if (furthest <= around_.reach() || widen(furthest)) return around_.inside(body);
-    }
-    walk_.in_box(body.centre - half, body.centre + half, in_box_);
-    return {{}, in_box_};
-  }
-
-  Leaf leaf_of(std::size_t place) {
-    go_to(place);
-    return {walk_.leaf().first, walk_.leaf().first + walk_.leaf().count};
-  }
-
-  void look_around(std::size_t place, double reach) {
-    go_to(place);
-    for (; !around_.has(place) && tries_ > 0; reach *= kLess)
-      gather(reach);
-  }
-
- private:
   std::span<const Neighbour> search(std::size_t place, std::size_t count, double reach,
                                     const Eigen::Vector3d* side) {
     assert(count <= kMost && place < walk_.tree().size());
     if (count == 0) return {};
-    const bool is_new = go_to(place);
+    go_to(place);
+    const bool is_new = std::exchange(is_new_, false);
     most_asked_ = std::max(most_asked_, count);
     // Who says how far it is, to about what was found last, knows.
     if (is_new && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
@@ -87,33 +48,29 @@ class NeighbourSearch::Impl {
     return last_;
   }
 
-  /// What was found last, and whether those who ask for the nearest are wont to ask for more of them then.
-  struct More {
-    std::size_t place = 0, first = 0;  // asked for
-    double reach = 0.0;
-    std::size_t count = 0;  // found, unless there are less; 0: forgotten
-    std::span<const Neighbour> found;
-    bool is_asked = false;
-    std::size_t usual = 0;
-    int often = 0;
-
-    void begin(std::size_t new_place, std::size_t new_first, double new_reach) {
-      constexpr int kLongest = 8;
-      often = std::clamp(often + (is_asked ? 1 : -1), 0, kLongest);
-      place = new_place, first = new_first, reach = new_reach;
-      is_asked = false;
+  PlacesInside inside(std::size_t place, const SearchedBody& body) {
+    go_to(place);
+    const Eigen::Vector3d half = half_extent(body.shape);
+    if (around_.has(place)) {
+      const double furthest = around_.furthest(body.centre, half);
+      if (furthest <= around_.reach() || widen(furthest)) return around_.inside(body);
     }
-    [[nodiscard]] bool is_usual() const {
-      constexpr int kOften = 6;
-      return often >= kOften;
-    }
-  };
-  std::span<const Neighbour> of_more(std::size_t count) {
-    if (count >= more_.found.size()) return more_.found;
-    std::copy(more_.found.begin(), more_.found.end(), nearest_.begin());
-    return {nearest_.data(), keep_nearest(walk_.tree(), {nearest_.data(), more_.found.size()}, count)};
+    walk_.in_box(body.centre - half, body.centre + half, in_box_);
+    return {{}, in_box_};
   }
 
+  Leaf leaf_of(std::size_t place) {
+    go_to(place);
+    return {walk_.leaf().first, walk_.leaf().first + walk_.leaf().count};
+  }
+
+  void look_around(std::size_t place, double reach) {
+    go_to(place);
+    for (; !around_.has(place) && tries_ > 0; reach *= kLess)
+      gather(reach);
+  }
+
+ private:
   /// How far the most that were asked for are, in a leaf.
   struct Furthest {
     std::size_t asked = 0;
@@ -143,13 +100,13 @@ class NeighbourSearch::Impl {
     return kRoom * (Eigen::Vector3d(x2, y2, z2) / det).cwiseMax(0.0).cwiseSqrt();
   }
 
-  bool go_to(std::size_t place) {
-    if (!walk_.go_to(place)) return false;
+  void go_to(std::size_t place) {
+    if (!walk_.go_to(place)) return;
+    is_new_ = true;
     around_.forget();
     tries_ = kTries;
     most_asked_before_ = std::exchange(most_asked_, 0);
     furthest_before_ = std::exchange(furthest_, {});
-    return true;
   }
 
   /// How much further off the most are that were asked for in the leaf before, and will be in this: points on
@@ -187,12 +144,11 @@ class NeighbourSearch::Impl {
 
   TreeWalk walk_;
   LeafSurroundings around_;
+  bool is_new_ = false;  // nothing was searched yet from this leaf
   int tries_ = 0;
   std::size_t most_asked_ = 0, most_asked_before_ = 0;  // of a search, in the leaf and in the one before
   std::span<const Neighbour> last_;                     // valid until the next search
   Furthest furthest_, furthest_before_;
-  More more_;
-  std::array<Neighbour, kMost> nearest_;
   std::vector<std::uint32_t> in_box_;
 };
 
@@ -200,12 +156,12 @@ NeighbourSearch::NeighbourSearch(const PointTree& tree) : tree_(tree), impl_(std
 NeighbourSearch::~NeighbourSearch() = default;
 
 std::span<const Neighbour> NeighbourSearch::nearest(std::size_t place, std::size_t count, double reach) {
-  return impl_->nearest(place, count, reach);
+  return impl_->search(place, count, reach, nullptr);
 }
 
 std::span<const Neighbour> NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
                                                            const Eigen::Vector3d& normal) {
-  return impl_->nearest_facing(place, count, reach, normal);
+  return impl_->search(place, count, reach, &normal);
 }
 
 PlacesInside NeighbourSearch::inside(std::size_t place, const SearchedBody& body) {

@@ -1,51 +1,28 @@
-#include "exact_moments.h"
+#include "surfel_queue.h"
 
 #include <raycloud/spatial/surfel.h>
-#include <raycloud/spatial/symmetric_eigen.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
+#include <cassert>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <span>
 
 namespace ray {
 namespace {
 
-Surfel surfel_of(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
-  Surfel surfel;
-  const Eigen::Vector3d middle = tree.point(place);
-  const Eigen::Vector3d to_sensor = unpack_direction(tree.to_sensor(place));
-  surfel.count = static_cast<std::uint32_t>(neighbours.size() + 1);
-  surfel.centroid = middle;
-  for (const Neighbour& neighbour : neighbours)
-    surfel.reach2 = std::max(surfel.reach2, neighbour.distance2);
-  if (surfel.reach2 > 0.0) {
-    const ExactMoments moments(tree, middle, neighbours, surfel.reach2);
-    const double count = surfel.count;
-    surfel.centroid += moments.mean(count);
-    const SymmetricEigen eigen = symmetric_eigen(moments.covariance(count));
-    surfel.variances = eigen.values.cwiseMax(0.0);
-    surfel.normal = eigen.vectors.col(0);
-    surfel.axis = eigen.vectors.col(2);
-  }
-  if (!surfel.is_surface() && to_sensor.squaredNorm() > 0.0) surfel.normal = to_sensor.normalized();
-  if (surfel.normal.dot(to_sensor) < 0.0) surfel.normal = -surfel.normal;
-  return surfel;
-}
-
-bool any_from_behind(const PointTree& tree, const Eigen::Vector3d& normal,
-                     std::span<const Neighbour> neighbours) {
-  return !std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
-    return is_seen_from(normal, tree.to_sensor(neighbour.place));
-  });
-}
-
 /// The normal of a thicker surfel may be any.
 bool is_flat(const Surfel& surfel, double flat = 0.1) {
   return surfel.variances[0] <= flat * surfel.variances[1];
+}
+
+/// So few points that rounding makes their shape are not flat.
+bool is_clearly_flatter(const Surfel& a, const Surfel& b) {
+  constexpr double kClearly = 0.25;
+  if (!a.is_surface() || !b.is_surface()) return a.is_surface();
+  return a.variances[0] * b.variances[1] < kClearly * b.variances[0] * a.variances[1];
 }
 
 /// No surface: what one beam left as it turned. Of a line, the normal may be any across it; of a sheet along
@@ -56,132 +33,21 @@ bool is_ring(const Surfel& surfel, const Eigen::Vector3d& ray) {
   return surfel.variances[1] < kThin * surfel.variances[2] || surfel.normal.dot(ray) < kEdgeOn * ray.norm();
 }
 
-/// From within 30 degrees of the direction that this point was seen from: one side.
-bool all_seen_alike(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
-  constexpr double kAlike = 0.87 * 32767.0 * 32767.0;
-  const PackedDirection& own = tree.to_sensor(place);
-  return std::all_of(neighbours.begin(), neighbours.end(), [&](const Neighbour& neighbour) {
-    const PackedDirection& d = tree.to_sensor(neighbour.place);
-    const std::int32_t x = own[0] * d[0], y = own[1] * d[1], z = own[2] * d[2];
-    return 1.0 * x + y + z >= kAlike;
-  });
-}
-
 /// How many of the nearest, of any side, tell where the sides are.
 std::size_t wide_count(const SurfelRule& rule) {
   return std::min(3 * rule.neighbours, NeighbourSearch::kMost);
 }
 
-/// More of the nearest than a surfel has, and from these, nearly always, the nearest of any side.
-class WideNeighbours {
+/// Whether those who ask for the nearest are wont to ask for more of them then: both are one search.
+class AsksForMore {
  public:
-  /// `found` are the nearest; `nearest` is the surfel of as many of them as the rule says, of any side.
-  WideNeighbours(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
-                 std::span<const Neighbour> found, const Surfel& nearest)
-      : search_(search), place_(place), rule_(rule), found_(found), count_(found.size()) {
-    std::copy(found.begin(), found.end(), all_.begin());
-    for (std::size_t i = 0; i < count_; ++i) {
-      const PackedDirection& d = search.tree().to_sensor(all_[i].place);
-      const auto at = static_cast<Eigen::Index>(i);
-      x_[at] = d[0], y_[at] = d[1], z_[at] = d[2];
-    }
-    // Where all are of a side, the nearest of that side are the nearest.
-    constexpr std::uint64_t kAll = ~std::uint64_t{0};
-    if (count_ > 0) known_[known_count_++] = {kAll >> (64 - count_), nearest};
-  }
-
-  /// All, as long as they were the last that were searched; none after that.
-  [[nodiscard]] std::span<const Neighbour> found() const { return found_; }
-
-  [[nodiscard]] Surfel surfel_of_side(const Eigen::Vector3d& side) {
-    const std::uint64_t facing = bits_facing(side);
-    for (std::size_t i = 0; i < known_count_; ++i)
-      if (known_[i].facing == facing) return known_[i].surfel;
-    const auto count = static_cast<std::size_t>(std::popcount(facing));
-    const bool are_all = count_ < wide_count(rule_);
-    if (count < rule_.neighbours && !are_all) {
-      found_ = {};
-      return surfel_of(search_.tree(), place_,
-                       search_.nearest_facing(place_, rule_.neighbours, rule_.reach, side));
-    }
-    Known& known = known_[std::min(known_count_, known_.size() - 1)];
-    known_count_ = std::min(known_count_ + 1, known_.size());
-    known = {facing, surfel_of(search_.tree(), place_, nearest_of(facing))};
-    return known.surfel;
-  }
+  [[nodiscard]] bool is_usual() const { return often_ >= kOften; }
+  void add(bool asked) { often_ = std::clamp(often_ + (asked ? 1 : -1), 0, kLongest); }
 
  private:
-  static constexpr std::size_t kMost = NeighbourSearch::kMost;
-  using Doubles = Eigen::Array<double, kMost, 1>;
-
-  /// A bit for each that was seen from the side.
-  [[nodiscard]] std::uint64_t bits_facing(const Eigen::Vector3d& side) const {
-    const Doubles facing = side.x() * x_ + side.y() * y_ + side.z() * z_;  // as is_seen_from has it
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      bits |= std::uint64_t{facing[static_cast<Eigen::Index>(i)] >= 0.0} << i;
-    return bits;
-  }
-
-  std::span<const Neighbour> nearest_of(std::uint64_t bits) {
-    std::size_t count = 0;
-    for (; bits != 0; bits &= bits - 1)
-      of_side_[count++] = all_[static_cast<std::size_t>(std::countr_zero(bits))];
-    return {of_side_.data(), keep_nearest(search_.tree(), {of_side_.data(), count}, rule_.neighbours)};
-  }
-
-  struct Known {
-    std::uint64_t facing;
-    Surfel surfel;
-  };
-
-  NeighbourSearch& search_;
-  std::size_t place_;
-  const SurfelRule& rule_;
-  std::span<const Neighbour> found_;
-  std::size_t count_;
-  std::array<Neighbour, kMost> all_, of_side_;
-  Doubles x_ = Doubles::Zero(), y_ = x_, z_ = x_;
-  std::array<Known, 3> known_;
-  std::size_t known_count_ = 0;
+  static constexpr int kOften = 6, kLongest = 8;
+  int often_ = 0;
 };
-
-/// Where the nearest neighbours are no flat surface: round or thick? If more of them are flat, as they are
-/// where the two sides of a wall are no further apart than their points, their normal says where the sides
-/// are, else the ray; but the first normal does, if that leaves a clearly flatter surface.
-SurfelOf surfel_of_thick(NeighbourSearch& search, std::size_t place, const SurfelRule& rule,
-                         const SurfelOf& nearest, bool from_behind) {
-  constexpr double kFlatEnough = 0.4;  // for that many
-  constexpr double kClearly = 0.25;
-  const PointTree& tree = search.tree();
-  std::array<PackedDirection, NeighbourSearch::kMost> to_sensors;  // for the next search ends what was found
-  const std::span<PackedDirection> nearest_to_sensors(to_sensors.data(), nearest.nearest.size());
-  std::transform(nearest.nearest.begin(), nearest.nearest.end(), to_sensors.begin(),
-                 [&](const Neighbour& neighbour) { return tree.to_sensor(neighbour.place); });
-  const std::span<const Neighbour> found = search.nearest(place, wide_count(rule), rule.reach);
-  const Surfel wide = surfel_of(tree, place, found);
-  const Eigen::Vector3d side =
-      is_flat(wide, kFlatEnough) ? wide.normal : unpack_direction(tree.to_sensor(place));
-  // The nearest of a side are the nearest, if those are of it.
-  if (!from_behind && std::all_of(nearest_to_sensors.begin(), nearest_to_sensors.end(),
-                                  [&](const PackedDirection& d) { return is_seen_from(side, d); }))
-    return {nearest.surfel, found};
-  WideNeighbours neighbours(search, place, rule, found, nearest.surfel);
-  const Surfel first = from_behind ? neighbours.surfel_of_side(nearest.surfel.normal) : nearest.surfel;
-  const Surfel other = neighbours.surfel_of_side(side);
-  const bool first_is_flatter =
-      first.variances[0] * other.variances[1] < kClearly * other.variances[0] * first.variances[1];
-  const Surfel surfel = neighbours.surfel_of_side((first_is_flatter ? first : other).normal);
-  return {surfel, neighbours.found()};
-}
-
-/// With more of the neighbours seen from the side of the ray, if these are a surface.
-Surfel past_ring(NeighbourSearch& search, std::size_t place, const SurfelRule& rule, const Surfel& ring,
-                 const Eigen::Vector3d& ray) {
-  const std::size_t wide = std::min(3 * rule.neighbours, NeighbourSearch::kMost);
-  const Surfel surfel = surfel_of(search.tree(), place, search.nearest_facing(place, wide, rule.reach, ray));
-  return is_flat(surfel) && !is_ring(surfel, ray) ? surfel : ring;
-}
 
 }  // namespace
 
@@ -193,30 +59,182 @@ Shape shape_of(const Surfel& surfel) {
           .planarity = (extents[1] - extents[0]) / extents[2]};
 }
 
-SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  const PointTree& tree = search.tree();
-  SurfelOf result;
-  result.nearest = search.nearest(place, rule.neighbours, rule.reach);
-  result.surfel = surfel_of(tree, place, result.nearest);
-  if (rule.by_side) {
-    const auto of_side = [&](const Eigen::Vector3d& side) {
-      return surfel_of(tree, place, search.nearest_facing(place, rule.neighbours, rule.reach, side));
-    };
-    const Surfel& nearest = result.surfel;
-    const bool from_behind = any_from_behind(tree, nearest.normal, result.nearest);
-    if (!is_flat(nearest) && !all_seen_alike(tree, place, result.nearest))
-      result = surfel_of_thick(search, place, rule, result, from_behind);
-    else if (is_flat(nearest) && from_behind)
-      result = {of_side(of_side(nearest.normal).normal), {}};
+/// Step by step, each for all places before the next.
+class SurfelFinder::Impl {
+ public:
+  Impl(NeighbourSearch& search, const SurfelRule& rule)
+      : search_(search), rule_(rule), queue_(search.tree()) {}
+
+  std::span<const SurfelOf> find(std::span<const std::size_t> places) {
+    assert(places.size() <= kMost);
+    count_ = places.size();
+    for (std::size_t i = 0; i < count_; ++i)
+      look_at_nearest(works_[i], places[i]);
+    queue_.make();
+    if (rule_.by_side) {
+      for (Work& work : works())
+        look_wide(work);
+      queue_.make();
+      for (Work& work : works())
+        look_from_sides(work);
+      queue_.make();
+      for (Work& work : works())
+        look_again(work);
+      queue_.make();
+    }
+    if (rule_.past_rings) {
+      for (Work& work : works())
+        look_past_ring(work);
+      queue_.make();
+      for (Work& work : works())
+        end_ring(work);
+    }
+    for (std::size_t i = 0; i < count_; ++i)
+      results_[i] = {places[i], *works_[i].result, &works_[i].around};
+    return {results_.data(), count_};
   }
-  if (!rule.past_rings) return result;
-  const Eigen::Vector3d ray = unpack_direction(tree.to_sensor(place));
-  if (is_ring(result.surfel, ray)) result = {past_ring(search, place, rule, result.surfel, ray), {}};
-  return result;
+
+ private:
+  using Some = Neighbourhood::Some;
+
+  enum class Kind : std::uint8_t {
+    kDone,
+    kThick,   ///< the nearest are no flat surface
+    kBehind,  ///< they are, and some of them were seen from its other side
+  };
+
+  struct Work {
+    Neighbourhood around;
+    std::size_t asked;  ///< all nearest that there are, if fewer than so many
+    Some close;         ///< as many of them as the rule says
+    Kind kind;
+    bool from_behind;
+    Some first_bits, other_bits;           ///< those of `around` that they are from; none: unknown
+    const Surfel *first, *other, *result;  ///< one of these:
+    Surfel nearest, wide, of_first, of_other, last;
+  };
+
+  [[nodiscard]] std::span<Work> works() { return {works_.data(), count_}; }
+
+  [[nodiscard]] Eigen::Vector3d to_sensor(const Work& work) const {
+    return unpack_direction(search_.tree().to_sensor(work.around.place()));
+  }
+
+  void search_nearest(Work& work, std::size_t place, std::size_t count) {
+    work.asked = count;
+    work.around.fill(search_.tree(), place, search_.nearest(place, count, rule_.reach));
+    work.close = work.around.nearest(work.around.all(), rule_.neighbours);
+  }
+
+  void look_at_nearest(Work& work, std::size_t place) {
+    search_nearest(work, place, more_.is_usual() ? wide_count(rule_) : rule_.neighbours);
+    work.kind = Kind::kDone;
+    work.result = &work.nearest;
+    queue_.add(work.around, work.close, work.nearest);
+  }
+
+  /// Where the nearest neighbours are no flat surface: round or thick? More of them may tell.
+  void look_wide(Work& work) {
+    const bool flat = is_flat(work.nearest);
+    work.from_behind = (work.close & ~work.around.seen_from(work.nearest.normal)) != 0;
+    const bool thick = !flat && !are_seen_alike(work);
+    more_.add(thick);
+    if (flat && work.from_behind) work.kind = Kind::kBehind;
+    if (!thick) return;
+    work.kind = Kind::kThick;
+    if (work.asked < wide_count(rule_)) search_nearest(work, work.around.place(), wide_count(rule_));
+    queue_.add(work.around, work.around.all(), work.wide);
+  }
+
+  /// From within 30 degrees of the direction that this point was seen from: one side.
+  [[nodiscard]] bool are_seen_alike(const Work& work) const {
+    constexpr double kAlike = 0.87 * 32767.0 * 32767.0;
+    const PackedDirection& own = search_.tree().to_sensor(work.around.place());
+    return (work.close & ~work.around.seen_from(Eigen::Vector3d(own[0], own[1], own[2]), kAlike)) == 0;
+  }
+
+  /// If more of the neighbours are flat, as they are where the two sides of a wall are no further apart than
+  /// their points, their normal says where the sides are, else the ray.
+  void look_from_sides(Work& work) {
+    constexpr double kFlatEnough = 0.4;  // for that many
+    if (work.kind == Kind::kDone) return;
+    work.first_bits = work.other_bits = 0;
+    work.first = &work.nearest, work.other = nullptr;
+    if (work.kind == Kind::kThick) {
+      const Eigen::Vector3d side = is_flat(work.wide, kFlatEnough) ? work.wide.normal : to_sensor(work);
+      // The nearest of a side are the nearest, if those are of it.
+      if (!work.from_behind && (work.close & ~work.around.seen_from(side)) == 0) {
+        work.kind = Kind::kDone;
+        return;
+      }
+      work.other = of_side(work, side, work.of_other, work.other_bits);
+    }
+    if (work.from_behind) work.first = of_side(work, work.nearest.normal, work.of_first, work.first_bits);
+  }
+
+  /// The first normal does, if that leaves a clearly flatter surface.
+  void look_again(Work& work) {
+    if (work.kind == Kind::kDone) return;
+    const bool first = work.other == nullptr || is_clearly_flatter(*work.first, *work.other);
+    Some bits = 0;
+    work.result = of_side(work, (first ? work.first : work.other)->normal, work.last, bits);
+  }
+
+  /// The surfel of the nearest neighbours that were seen from a side: one that is known, or else `surfel`,
+  /// when the queue is made. `bits` says who they were chosen from.
+  const Surfel* of_side(Work& work, const Eigen::Vector3d& side, Surfel& surfel, Some& bits) {
+    const Some facing = work.around.seen_from(side);
+    if (facing == work.around.all()) return &work.nearest;
+    const auto count = static_cast<std::size_t>(std::popcount(facing));
+    if (count < rule_.neighbours && work.around.size() == work.asked) {
+      search_side(work.around.place(), rule_.neighbours, side, surfel);
+      return &surfel;
+    }
+    if (facing != 0 && facing == work.first_bits) return work.first;
+    if (facing != 0 && facing == work.other_bits) return work.other;
+    bits = facing;
+    queue_.add(work.around, work.around.nearest(facing, rule_.neighbours), surfel);
+    return &surfel;
+  }
+
+  void search_side(std::size_t place, std::size_t count, const Eigen::Vector3d& side, Surfel& surfel) {
+    of_side_.fill(search_.tree(), place, search_.nearest_facing(place, count, rule_.reach, side));
+    queue_.add(of_side_, of_side_.all(), surfel);
+  }
+
+  /// With more of the neighbours seen from the side of the ray, if these are a surface.
+  void look_past_ring(Work& work) {
+    const Eigen::Vector3d ray = to_sensor(work);
+    work.other = nullptr;
+    if (!is_ring(*work.result, ray)) return;
+    work.other = &work.wide;
+    search_side(work.around.place(), wide_count(rule_), ray, work.wide);
+  }
+  void end_ring(Work& work) {
+    if (work.other != nullptr && is_flat(work.wide) && !is_ring(work.wide, to_sensor(work)))
+      work.result = &work.wide;
+  }
+
+  NeighbourSearch& search_;
+  SurfelRule rule_;
+  SurfelQueue queue_;
+  AsksForMore more_;
+  std::array<Work, kMost> works_;
+  std::size_t count_ = 0;
+  Neighbourhood of_side_;
+  std::array<SurfelOf, kMost> results_;
+};
+
+SurfelFinder::SurfelFinder(NeighbourSearch& search, const SurfelRule& rule)
+    : search_(search), impl_(std::make_unique<Impl>(search, rule)) {}
+SurfelFinder::~SurfelFinder() = default;
+
+std::span<const SurfelOf> SurfelFinder::find(std::span<const std::size_t> places) {
+  return impl_->find(places);
 }
 
 Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule) {
-  return surfel_and_nearest(search, place, rule).surfel;
+  return SurfelFinder(search, rule).find({&place, 1}).front().surfel;
 }
 
 }  // namespace ray

@@ -5,12 +5,6 @@
 
 namespace ray {
 
-Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::size_t place, double reach,
-                       double range_noise) {
-  return ellipsoid_of(surfel_at(search, place, ellipsoid_rule(reach)), points.point(place),
-                      unpack_direction(points.to_sensor(place)), range_noise);
-}
-
 EllipsoidMaker::EllipsoidMaker(const Context& context, std::vector<SeenPoint>&& points)
     : points_(context, points) {
   points = std::vector<SeenPoint>();
@@ -21,13 +15,15 @@ std::unique_ptr<EllipsoidTree> EllipsoidMaker::make(const Context& context, doub
                                                     OwnHits* hits) {
   parallel_for(context, points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(points_);
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t i = points_.index(place);
-      ellipsoids_->set(i, ellipsoid_at(search, points_, place, reach, range_noise));
-      if (hits == nullptr) continue;
-      const std::uint32_t slot = ellipsoids_->slot(i);
-      hits->find(search, place, ellipsoids_->at_slot(slot), slot);
-    }
+    const auto all = [](std::size_t) { return true; };
+    for_each_ellipsoid(search, begin, end, reach, range_noise, all,
+                       [&](std::size_t place, const Ellipsoid& ellipsoid) {
+                         const std::uint32_t i = points_.index(place);
+                         ellipsoids_->set(i, ellipsoid);
+                         if (hits == nullptr) return;
+                         const std::uint32_t slot = ellipsoids_->slot(i);
+                         hits->find(search, place, ellipsoids_->at_slot(slot), slot);
+                       });
   });
   ellipsoids_->close(context);
   return std::move(ellipsoids_);

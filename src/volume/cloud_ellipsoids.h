@@ -18,9 +18,17 @@
 
 namespace ray {
 
-/// The ellipsoid around a point.
-[[nodiscard]] Ellipsoid ellipsoid_at(NeighbourSearch& search, const PointTree& points, std::size_t place,
-                                     double reach, double range_noise);
+/// `visit(place, ellipsoid)` for the ellipsoid around each point from place `begin` to `end` that is
+/// `wanted`.
+template <class Wanted, class Visit>
+void for_each_ellipsoid(NeighbourSearch& search, std::size_t begin, std::size_t end, double reach,
+                        double range_noise, const Wanted& wanted, const Visit& visit) {
+  const PointTree& points = search.tree();
+  SurfelFinder(search, ellipsoid_rule(reach)).for_each(begin, end, wanted, [&](const SurfelOf& found) {
+    visit(found.place, ellipsoid_of(found.surfel, points.point(found.place),
+                                    unpack_direction(points.to_sensor(found.place)), range_noise));
+  });
+}
 
 /// One ellipsoid for each of some points.
 class EllipsoidMaker {

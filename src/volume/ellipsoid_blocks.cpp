@@ -82,14 +82,14 @@ void EllipsoidBlocks::make(const Context& context, Block<SeenPoint>&& block, std
     NeighbourSearch search(points);
     Eigen::AlignedBox3d box;
     std::vector<CellRun>& of_range = runs[begin / kPointsAtOnce];
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t i = points.index(place);
-      if (block.own[i] == 0) continue;
-      const Ellipsoid ellipsoid = ellipsoid_at(search, points, place, reach, range_noise_);
-      ellipsoids[place_of_own[i]] = packed(ellipsoid);
-      box.extend(box_of(ellipsoid));
-      add_to_runs(of_range, ellipsoid, place_of_own[i]);
-    }
+    const auto is_own = [&](std::size_t place) { return block.own[points.index(place)] != 0; };
+    for_each_ellipsoid(search, begin, end, reach, range_noise_, is_own,
+                       [&](std::size_t place, const Ellipsoid& ellipsoid) {
+                         const std::uint32_t own = place_of_own[points.index(place)];
+                         ellipsoids[own] = packed(ellipsoid);
+                         box.extend(box_of(ellipsoid));
+                         add_to_runs(of_range, ellipsoid, own);
+                       });
     const std::lock_guard lock(mutex);
     boxes_[part].extend(box);
   });

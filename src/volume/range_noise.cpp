@@ -73,8 +73,10 @@ void RangeNoise::add(const Context& context, const PointTree& tree) {
   parallel_for(context, tree.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     NeighbourSearch search(tree);
     std::vector<Surfel> found;
-    for (std::size_t place = begin; place < end; ++place)
-      if (is_in_sample(tree.point(place))) found.push_back(surfel_at(search, place, ellipsoid_rule(reach_)));
+    SurfelFinder(search, ellipsoid_rule(reach_))
+        .for_each(
+            begin, end, [&](std::size_t place) { return is_in_sample(tree.point(place)); },
+            [&](const SurfelOf& one) { found.push_back(one.surfel); });
     const std::lock_guard lock(mutex);
     for (const Surfel& surfel : found)
       add(surfel);
@@ -117,15 +119,15 @@ std::vector<std::uint32_t> RangeNoise::add_within(const Context& context, std::s
   const PointTree tree(context, near);
   NeighbourSearch search(tree);
   std::vector<std::uint32_t> left;
-  for (std::size_t place = 0; place < tree.size(); ++place) {
-    const std::uint32_t point = asked_of_near[tree.index(place)];
-    if (point == none) continue;
-    const Surfel surfel = surfel_at(search, place, rule);
-    if (is_last || surfel.count > rule.neighbours)
-      add(surfel);
-    else
-      left.push_back(point);
-  }
+  SurfelFinder(search, rule)
+      .for_each(
+          0, tree.size(), [&](std::size_t place) { return asked_of_near[tree.index(place)] != none; },
+          [&](const SurfelOf& found) {
+            if (is_last || found.surfel.count > rule.neighbours)
+              add(found.surfel);
+            else
+              left.push_back(asked_of_near[tree.index(found.place)]);
+          });
   std::sort(left.begin(), left.end());
   return left;
 }

@@ -32,10 +32,6 @@ inline auto nearer_first(const PointTree& tree) {
   };
 }
 
-/// Leaves the `most` nearest in front, in no order that could be relied on; returns how many these are.
-/// Precondition: there are at most NeighbourSearch::kMost. About 0.1 µs for 16 of 48.
-std::size_t keep_nearest(const PointTree& tree, std::span<Neighbour> neighbours, std::size_t most);
-
 /// Searches in a tree, with the memory that they need (about 80 kB); one for each thread. Made for all points
 /// one after the other, in the order of the tree: what is around a leaf is gathered once for its points.
 class NeighbourSearch {

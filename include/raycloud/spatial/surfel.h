@@ -1,11 +1,15 @@
 #pragma once
 /// The surface around a point, from its neighbours that were seen from the same side (paper, section VI-D).
 
-#include <raycloud/spatial/neighbour_search.h>
+#include <raycloud/spatial/neighbourhood.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
 
 namespace ray {
@@ -47,18 +51,54 @@ struct SurfelRule {
 /// The surfel of the point at `place`. The nearest neighbours give a first normal; where some of them were
 /// seen from its other side, the nearest that were not are taken instead, twice over as the normal changes.
 /// Where the nearest neighbours are no flat surface, as around a pole or at a wall no thicker than its points
-/// are apart, more of them, or the ray, tell another side, and the flatter outcome counts. The result depends
-/// on neither the tree nor the order of its points, to the last bit. About 0.3 µs and one to five searches.
+/// are apart, more of them, or the ray, tell another side, and the flatter outcome that is a surface counts.
+/// The result depends on neither the tree nor the order of its points, to the last bit. About 0.5 µs and one
+/// to five searches; who asks for many has a SurfelFinder.
 [[nodiscard]] Surfel surfel_at(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
 
 /// A surfel, and what is known of the neighbours.
 struct SurfelOf {
+  std::size_t place = 0;
   Surfel surfel;
-  /// The nearest ones, whatever side they were seen from, as many as were searched: the rule's, or more. None
-  /// if the last search was one for a side. Valid until the next search.
-  std::span<const Neighbour> nearest;
+  /// The nearest ones, whatever side they were seen from: as many as the rule says, or more.
+  const Neighbourhood* around = nullptr;
 };
-/// As surfel_at, for who asks the neighbours, too.
-[[nodiscard]] SurfelOf surfel_and_nearest(NeighbourSearch& search, std::size_t place, const SurfelRule& rule);
+
+/// Surfels of places that lie together, several at once: the same as surfel_at, and a third faster. 30 kB.
+class SurfelFinder {
+ public:
+  static constexpr std::size_t kMost = 8;  ///< at once
+
+  SurfelFinder(NeighbourSearch& search, const SurfelRule& rule);
+  ~SurfelFinder();
+  SurfelFinder(const SurfelFinder&) = delete;
+  SurfelFinder& operator=(const SurfelFinder&) = delete;
+
+  /// Of these places, in their order; valid until the next call. Precondition: at most kMost. Fast if they
+  /// are in one leaf.
+  std::span<const SurfelOf> find(std::span<const std::size_t> places);
+
+  /// `visit(found)` for each place from begin to end that is `wanted(place)`, in order. Searches meanwhile
+  /// are allowed.
+  template <class Wanted, class Visit>
+  void for_each(std::size_t begin, std::size_t end, const Wanted& wanted, const Visit& visit) {
+    std::array<std::size_t, kMost> places;
+    while (begin < end) {
+      const std::size_t leaf_end = std::min(search_.leaf_of(begin).end, end);
+      while (begin < leaf_end) {
+        std::size_t count = 0;
+        for (; begin < leaf_end && count < kMost; ++begin)
+          if (wanted(begin)) places[count++] = begin;
+        for (const SurfelOf& found : find({places.data(), count}))
+          visit(found);
+      }
+    }
+  }
+
+ private:
+  class Impl;
+  NeighbourSearch& search_;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace ray

@@ -1,7 +1,6 @@
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/random.h>
 #include <raycloud/spatial/neighbour_search.h>
-#include <raycloud/spatial/surfel.h>
 #include <raycloud/spatial/symmetric_eigen.h>
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -159,24 +157,6 @@ RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForceInAnyOrderOfAsking, ()) {
   }
 }
 
-TEST(PointTree, KeepsTheNearestOfNeighbours) {
-  const std::vector<SeenPoint> points = arranged(Arrangement::grid, 2000, 3);
-  const PointTree tree({}, points);
-  const RandomStream random(5, "some of the points");
-  for (std::size_t trial = 0; trial < 200; ++trial) {
-    std::vector<Neighbour> neighbours(trial % 65);
-    for (std::size_t i = 0; i < neighbours.size(); ++i) {
-      const auto place = static_cast<std::uint32_t>(random.uniform(trial, i) * 2000.0);
-      neighbours[i] = {(tree.point(place) - tree.point(0)).squaredNorm(), place};
-    }
-    Found expected = sorted(tree, neighbours);
-    const std::size_t most = trial % 23;
-    expected.resize(std::min(expected.size(), most));
-    const std::size_t kept = keep_nearest(tree, neighbours, most);
-    EXPECT_EQ(sorted(tree, std::span(neighbours).first(kept)), expected);
-  }
-}
-
 /// Large enough for several buckets; queries in any order.
 TEST(PointTree, NeighboursOfManyPointsAreThoseOfBruteForce) {
   for (const Arrangement arrangement : kArrangements) {
@@ -218,92 +198,6 @@ RC_GTEST_PROP(SymmetricEigen, AgreesWithIteration, ()) {
   RC_ASSERT((got.values - expected.eigenvalues()).cwiseAbs().maxCoeff() <= 1e-7 * largest);
   RC_ASSERT((got.vectors.transpose() * got.vectors - Eigen::Matrix3d::Identity()).norm() < 1e-9);
   RC_ASSERT((got.vectors * got.values.asDiagonal() * got.vectors.transpose() - m).norm() <= 1e-7 * largest);
-}
-
-/// Both sides of a wall, `thickness` apart, each seen from its own side.
-std::vector<SeenPoint> wall(double thickness, double noise, std::size_t count) {
-  const RandomStream random(3, "wall");
-  std::vector<SeenPoint> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double side = i % 2 == 0 ? 1.0 : -1.0;
-    const double off =
-        noise * (random.uniform(i, 2) + random.uniform(i, 3) + random.uniform(i, 4) - 1.5) * 2.0;
-    points[i].end = {random.uniform(i, 0) * 3.0, random.uniform(i, 1) * 3.0, side * 0.5 * thickness + off};
-    points[i].to_sensor = pack_direction(Eigen::Vector3d(1.0, 1.0, side * 3.0));
-  }
-  return points;
-}
-
-TEST(Surfel, EachSideOfAThinWallIsASurfaceOfItsOwn) {
-  const std::vector<SeenPoint> points = wall(0.05, 0.002, 10000);
-  const PointTree tree({}, points);
-  NeighbourSearch search(tree);
-  for (std::size_t place = 0; place < tree.size(); ++place) {
-    const double side = tree.index(place) % 2 == 0 ? 1.0 : -1.0;
-    const Surfel surfel = surfel_at(search, place, {});
-    EXPECT_EQ(surfel.count, 17U);
-    EXPECT_GT(surfel.normal.z() * side, 0.9);
-    EXPECT_NEAR(surfel.centroid.z(), side * 0.025, 0.005);
-    EXPECT_LT(std::sqrt(surfel.variances[0]), 0.006);
-  }
-}
-
-/// What the outcome of a block may depend on: its points, not how many others there are out of reach, nor
-/// threads.
-TEST(Surfel, SameBitsWhateverTheTree) {
-  const std::vector<SeenPoint> points = wall(0.05, 0.02, 30000);
-  std::vector<SeenPoint> more = points;
-  for (const SeenPoint& point : points)
-    more.push_back({point.end + Eigen::Vector3d(50.0, 0.0, 0.0), point.to_sensor});
-  const auto surfels = [](const std::vector<SeenPoint>& all, unsigned threads) {
-    const PointTree tree({.threads = threads}, all);
-    NeighbourSearch search(tree);
-    std::vector<Surfel> result(all.size());
-    for (std::size_t place = 0; place < tree.size(); ++place)
-      result[tree.index(place)] = surfel_at(search, place, {.reach = 10.0});
-    return result;
-  };
-  const std::vector<Surfel> expected = surfels(points, 1);
-  for (const std::vector<Surfel>& other : {surfels(points, 3), surfels(more, 2)}) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      ASSERT_EQ(other[i].normal, expected[i].normal);
-      ASSERT_EQ(other[i].centroid, expected[i].centroid);
-      ASSERT_EQ(other[i].variances, expected[i].variances);
-    }
-  }
-}
-
-/// The rings that the beams of a spinning lidar draw on the ground, 40 cm apart, are sheets along the rays by
-/// the noise of their ranges.
-TEST(Surfel, LooksPastTheRingsOfASpinningLidar) {
-  const Eigen::Vector3d sensor(0.0, 0.0, 2.0);
-  const RandomStream random(5, "rings");
-  std::vector<SeenPoint> points;
-  for (int ring = 0; ring < 12; ++ring)
-    for (int step = 0; step < 1500; ++step) {
-      const double angle = (step + 0.01 * ring) * 2.0 * std::numbers::pi / 1500.0, radius = 8.0 + 0.4 * ring;
-      const Eigen::Vector3d ground(radius * std::cos(angle), radius * std::sin(angle), 0.0);
-      const Eigen::Vector3d ray = (ground - sensor).normalized();
-      // Even, ±5 cm.
-      const Eigen::Vector3d end = ground + 0.1 * (random.uniform(points.size()) - 0.5) * ray;
-      points.push_back({end, pack_direction(sensor - end)});
-    }
-  const PointTree tree({}, points);
-  NeighbourSearch search(tree);
-  const auto upright = [&](bool past_rings) {
-    std::size_t count = 0;
-    for (std::size_t place = 0; place < tree.size(); ++place)
-      count += surfel_at(search, place, {.past_rings = past_rings}).normal.z() > 0.99 ? 1 : 0;
-    return static_cast<double>(count) / static_cast<double>(tree.size());
-  };
-  EXPECT_LT(upright(false), 0.5);
-  EXPECT_GT(upright(true), 0.95);
-}
-
-TEST(Surfel, ShapesOfALineAPlaneAndABall) {
-  EXPECT_NEAR(shape_of({.variances = {0.0, 0.0, 1.0}}).cylindricality, 1.0, 1e-12);
-  EXPECT_NEAR(shape_of({.variances = {0.0, 1.0, 1.0}}).planarity, 1.0, 1e-12);
-  EXPECT_NEAR(shape_of({.variances = {1.0, 1.0, 1.0}}).sphericity, 1.0, 1e-12);
 }
 
 }  // namespace
