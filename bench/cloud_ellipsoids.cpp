@@ -17,11 +17,12 @@ ray::EllipsoidTree ellipsoids_of(const ray::Context& context, const ray::RayClou
   const ray::PointTree near(context, points);
   ray::parallel_for(context, near.size(), 4096, [&](std::size_t begin, std::size_t end) {
     ray::NeighbourSearch search(near);
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t i = near.index(place);
-      tree.set(i, ray::ellipsoid_of(surfel_at(search, place, {.by_side = neighbours.by_side}), points[i].end,
-                                    ray::unpack_direction(points[i].to_sensor), neighbours.range_noise));
-    }
+    ray::SurfelFinder finder(search, {.by_side = neighbours.by_side});
+    finder.for_each(begin, end, [&](const ray::SurfelOf& found) {
+      const std::uint32_t i = near.index(found.place);
+      tree.set(i, ray::ellipsoid_of(found.surfel, points[i].end, ray::unpack_direction(points[i].to_sensor),
+                                    neighbours.range_noise));
+    });
   });
   tree.close(context);
   return tree;

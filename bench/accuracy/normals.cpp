@@ -36,13 +36,14 @@ void add_angles(const Sampled& sampled, bool by_side, std::vector<double>& angle
   std::vector<double> by_place(tree.size(), -1.0);
   ray::parallel_for({}, tree.size(), 1024, [&](std::size_t begin, std::size_t end) {
     ray::NeighbourSearch search(tree);
-    for (std::size_t place = begin; place < end; ++place) {
-      const Truth& truth = sampled.truth[tree.index(place)];
-      if (!truth.counted) continue;
-      const Vector3d normal = surfel_at(search, place, {.by_side = by_side}).normal;
-      by_place[place] =
+    ray::SurfelFinder finder(search, {.by_side = by_side});
+    finder.for_each(begin, end, [&](const ray::SurfelOf& found) {
+      const Truth& truth = sampled.truth[tree.index(found.place)];
+      if (!truth.counted) return;
+      const Vector3d& normal = found.surfel.normal;
+      by_place[found.place] =
           std::atan2(normal.cross(truth.normal).norm(), normal.dot(truth.normal)) * 180.0 / std::numbers::pi;
-    }
+    });
   });
   std::copy_if(by_place.begin(), by_place.end(), std::back_inserter(angles), [](double a) { return a >= 0; });
 }

@@ -94,6 +94,11 @@ class SurfelFinder {
       }
     }
   }
+  template <class Visit>
+  void for_each(std::size_t begin, std::size_t end, const Visit& visit) {
+    for_each(
+        begin, end, [](std::size_t) { return true; }, visit);
+  }
 
  private:
   class Impl;

@@ -287,8 +287,9 @@ TEST(Surfel, SameBitsWhateverTheTree) {
     const PointTree tree({.threads = threads}, all);
     NeighbourSearch search(tree);
     std::vector<Surfel> result(all.size());
-    for (std::size_t place = 0; place < tree.size(); ++place)
-      result[tree.index(place)] = surfel_at(search, place, {.reach = 10.0});
+    SurfelFinder(search, {.reach = 10.0}).for_each(0, tree.size(), [&](const SurfelOf& found) {
+      result[tree.index(found.place)] = found.surfel;
+    });
     return result;
   };
   const std::vector<Surfel> expected = surfels(points, 1);
@@ -320,8 +321,9 @@ TEST(Surfel, LooksPastTheRingsOfASpinningLidar) {
   NeighbourSearch search(tree);
   const auto upright = [&](bool past_rings) {
     std::size_t count = 0;
-    for (std::size_t place = 0; place < tree.size(); ++place)
-      count += surfel_at(search, place, {.past_rings = past_rings}).normal.z() > 0.99 ? 1 : 0;
+    SurfelFinder(search, {.past_rings = past_rings}).for_each(0, tree.size(), [&](const SurfelOf& found) {
+      count += found.surfel.normal.z() > 0.99 ? 1 : 0;
+    });
     return static_cast<double>(count) / static_cast<double>(tree.size());
   };
   EXPECT_LT(upright(false), 0.5);
