@@ -99,6 +99,27 @@ class Columns {
   std::vector<std::pair<std::pair<double, double>, bool>> seen_;
 };
 
+/// What the patches of a cell say.
+struct CellSums {
+  double known = 0.0, apart = 0.0, refuted = 0.0;
+};
+
+/// Adds cells that have one voice each.
+void add_cells(const std::vector<CellSums>& cells, Evidence& evidence) {
+  constexpr double kApart = 0.3;  // weight of being apart from a surface, where being refuted has 1
+  constexpr double kFew = 3.0;    // patches, of which a cell counts half
+  evidence.cells.reserve(cells.size());
+  for (const CellSums& cell : cells) {
+    const double scale = 1.0 / (cell.known + kFew), known = scale * cell.known,
+                 refuted = scale * cell.refuted, against = refuted + scale * kApart * cell.apart;
+    evidence.cells.push_back(
+        {static_cast<float>(known), static_cast<float>(against), static_cast<float>(refuted)});
+    evidence.known += known;
+    evidence.against += against;
+    evidence.refuted += refuted;
+  }
+}
+
 }  // namespace
 
 std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t most) {
@@ -124,12 +145,12 @@ Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose, c
   return agreement;
 }
 
-Witnesses::Witnesses(const PatchLevel& level, std::size_t most) : patches_(judged_patches(level, most)) {
-  constexpr double kCell = 4.0;  // patches
+Witnesses::Witnesses(const PatchLevel& level, std::size_t most, double cell_width)
+    : patches_(judged_patches(level, most)) {
   KeyTable<std::uint32_t> numbers;
   for (const JudgedPatch& judged : patches_) {
     const Eigen::Array<std::int64_t, 3, 1> cell =
-        (judged.patch.mean.array() / (kCell * level.width())).floor().cast<std::int64_t>();
+        (judged.patch.mean.array() / cell_width).floor().cast<std::int64_t>();
     const auto added = numbers.add(voxel_place({cell.x(), cell.y(), cell.z()}).key);
     if (added.is_new) *added.value = static_cast<std::uint32_t>(count_++);
     cells_.push_back(*added.value);
@@ -139,12 +160,7 @@ Witnesses::Witnesses(const PatchLevel& level, std::size_t most) : patches_(judge
 Evidence evidence_of(const Witnesses& witnesses, const Pose& pose, const Observed& other, double tolerance) {
   constexpr double kRound = 0.5;   // weight of patches that are not flat: where these are is less sure
   constexpr double kNearby = 0.3;  // cost of those up to which they fit
-  constexpr double kApart = 0.3;   // weight of being apart from a surface, where being refuted has 1
-  constexpr double kFew = 3.0;     // patches, of which a cell counts half
-  struct Sums {
-    double known = 0.0, apart = 0.0, refuted = 0.0;
-  };
-  std::vector<Sums> cells(witnesses.cells());
+  std::vector<CellSums> cells(witnesses.cells());
   Evidence evidence;
   for (std::size_t i = 0; i < witnesses.patches().size(); ++i) {
     const auto& [patch, is_clean] = witnesses.patches()[i];
@@ -152,21 +168,34 @@ Evidence evidence_of(const Witnesses& witnesses, const Pose& pose, const Observe
     count(seen, evidence.counts);
     if (!seen.is_known()) continue;
     const double weight = patch.is_flat() ? 1.0 : kRound;
-    Sums& cell = cells[witnesses.cell_of(i)];
+    CellSums& cell = cells[witnesses.cell_of(i)];
     cell.known += weight;
     if (patch.is_flat() || seen.cost > kNearby) cell.apart += weight * seen.cost;
     if (seen.is_empty || (is_clean && !seen.is_same)) cell.refuted += weight;
   }
-  evidence.cells.reserve(cells.size());
-  for (const Sums& cell : cells) {
-    const double scale = 1.0 / (cell.known + kFew), known = scale * cell.known,
-                 refuted = scale * cell.refuted, against = refuted + scale * kApart * cell.apart;
-    evidence.cells.push_back(
-        {static_cast<float>(known), static_cast<float>(against), static_cast<float>(refuted)});
-    evidence.known += known;
-    evidence.against += against;
-    evidence.refuted += refuted;
+  add_cells(cells, evidence);
+  return evidence;
+}
+
+Evidence evidence_of(const Witnesses& witnesses, std::span<const std::uint8_t> pierced, const Pose& pose,
+                     const PatchLevel& other, double tolerance) {
+  std::vector<CellSums> cells(witnesses.cells());
+  Evidence evidence;
+  for (std::size_t i = 0; i < pierced.size(); ++i) {
+    const auto& [patch, is_clean] = witnesses.patches()[i];
+    if (!is_clean) continue;
+    const Eigen::Vector3d place = pose * patch.mean;
+    const Patch* surface = counterpart_of(patch, other, place, pose.rotation);
+    Seen seen;
+    seen.is_empty = pierced[i] != 0;
+    seen.is_same = !seen.is_empty && surface != nullptr &&
+                   std::abs(surface->normal.dot(surface->mean - place)) < tolerance;
+    count(seen, evidence.counts);
+    CellSums& cell = cells[witnesses.cell_of(i)];
+    cell.known += seen.is_known() ? 1.0 : 0.0;
+    cell.refuted += seen.is_empty ? 1.0 : 0.0;
   }
+  add_cells(cells, evidence);
   return evidence;
 }
 

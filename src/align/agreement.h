@@ -43,11 +43,11 @@ struct JudgedPatch {
 };
 [[nodiscard]] std::vector<JudgedPatch> judged_patches(const PatchLevel& level, std::size_t most);
 
-/// An even choice of the patches of a cloud, and in which cell of its space each lies: 4 patches wide, so
-/// that what has moved fills few of them.
+/// An even choice of the patches of a cloud, and in which cell of its space each lies: so wide (m) that what
+/// has moved fills few of them.
 class Witnesses {
  public:
-  Witnesses(const PatchLevel& level, std::size_t most);
+  Witnesses(const PatchLevel& level, std::size_t most, double cell_width);
 
   [[nodiscard]] const std::vector<JudgedPatch>& patches() const { return patches_; }
   [[nodiscard]] std::uint32_t cell_of(std::size_t patch) const { return cells_[patch]; }
@@ -81,6 +81,11 @@ struct Evidence {
 };
 [[nodiscard]] Evidence evidence_of(const Witnesses& witnesses, const Pose& pose, const Observed& other,
                                    double tolerance);
+
+/// The same of rays: a clean patch is known where it is on a surface of the other cloud, or `pierced` (1, one
+/// number for each witness) by a ray of it, which speaks against the pose.
+[[nodiscard]] Evidence evidence_of(const Witnesses& witnesses, std::span<const std::uint8_t> pierced,
+                                   const Pose& pose, const PatchLevel& other, double tolerance);
 
 /// `tolerance` (m): how far from a surface is on it.
 [[nodiscard]] Agreement agreement_of(std::span<const JudgedPatch> patches, const Pose& pose,

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace ray {
@@ -199,44 +200,104 @@ bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
          Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() < kTurn;
 }
 
-/// Others are rivals wherever they came to lie elsewhere, however near.
-Doubt doubt_of(const std::vector<Hypothesis>& judged, const Pose& last, const Known& cloud,
-               const Jury& jury) {
+/// What is asked of the hypotheses: the clouds, and the jury that judged them.
+struct Case {
+  const Context& context;
+  const Known& cloud;
+  const Known& reference;
+  const Jury& jury;
+};
+
+/// Whether two poses put the cloud to different places, if only a quarter of a patch apart.
+bool is_elsewhere(const Pose& a, const Pose& b, const Known& cloud) {
+  constexpr double kApart = 0.25;  // widths
+  return (a.translation - b.translation).norm() > kApart * cloud.fine.width() || !is_same_place(a, b, cloud);
+}
+
+/// Where the last fit rests, from a hypothesis: it may creep, and then is made again.
+Hypothesis settled(const Case& of, const Hypothesis& hypothesis) {
+  constexpr int kMostFits = 3;
+  Hypothesis rests{hypothesis.pose, {}, {}, 0.0};
+  for (int i = 0; i < kMostFits; ++i) {
+    const Pose before = rests.pose;
+    rests.pose = last_fit(of.context, of.cloud, of.reference, before).pose;
+    if (!is_elsewhere(rests.pose, before, of.cloud)) break;
+  }
+  of.jury.judge(rests);
+  return rests;
+}
+
+/// The best pose, judged by patches and by rays.
+struct Best {
+  Hypothesis by_patches, by_rays;
+};
+
+/// Where no ray goes through a clean surface, what free space refutes in one cloud is leaves and the like,
+/// and in the other no more than what edges come to.
+bool is_refuted(const Best& best) {
+  constexpr double kNearlyNone = 0.005, kEdges = 0.03, kLeastKnown = 50.0;  // of space; cells
+  const Hypothesis& by_rays = best.by_rays;
+  const bool pierces_none =
+      by_rays.there.known + by_rays.back.known > kLeastKnown && by_rays.refuted_share() < kNearlyNone;
+  return best.by_patches.is_refuted() && !(pierces_none && best.by_patches.is_refuted_by_one_only(kEdges));
+}
+
+/// What patches say clearly of two poses. Where little is in both, much of what speaks against a pose is
+/// edges, and apart: far away, what is refuted must tell, too.
+bool is_worse(const Case& of, const Hypothesis& other, const Hypothesis& best) {
   constexpr double kSigmas = 2.0;
-  const Hypothesis& best = judged.front();
+  const bool is_less = sigmas_worse(other, best) >= kSigmas;
+  if (!is_near(other.pose, best.pose, of.cloud))
+    return is_less && sigmas_more_refuted(other, best) >= kSigmas;
+  return is_less || of.jury.sigmas_worse_closely(other, best) >= kSigmas;
+}
+
+/// What rays say of two poses: near each other they tell of the same surfaces.
+bool is_worse_by_rays(const Case& of, const Hypothesis& other, const Best& best) {
+  constexpr double kSigmas = 2.0;
+  return is_near(other.pose, best.by_patches.pose, of.cloud) &&
+         sigmas_worse(of.jury.judged_by_rays(of.context, other.pose), best.by_rays, 0.0) >= kSigmas;
+}
+
+/// All that are as good elsewhere, each once. Only where the finest fit rests is a rival: on the way there,
+/// what fits less may not show yet.
+std::vector<Hypothesis> rivals_of(const Case& of, const std::vector<Hypothesis>& judged,
+                                  const Best& judged_best) {
+  constexpr double kLess = 0.5;        // of the score of the best, for others to be rivals
+  constexpr double kLessKnown = 0.03;  // or of what is known of it
+  const Hypothesis& best = judged_best.by_patches;
+  const double least =
+      best.score - std::max(kLess * std::abs(best.score), kLessKnown * (best.there.known + best.back.known));
+  const auto is_rival = [&](const Hypothesis& other) {
+    return is_elsewhere(other.pose, best.pose, of.cloud) && !other.is_idle() && other.score > least &&
+           !is_worse(of, other, best);
+  };
+  std::vector<Hypothesis> maybe, rivals;
+  std::copy_if(judged.begin(), judged.end(), std::back_inserter(maybe), is_rival);
+  for (const Hypothesis& one : without_twins(maybe, of.cloud)) {
+    const Hypothesis rests = settled(of, one);
+    if (is_rival(rests) && !is_worse_by_rays(of, rests, judged_best)) rivals.push_back(rests);
+  }
+  return rivals;
+}
+
+Doubt doubt_of(const Case& of, const std::vector<Hypothesis>& judged, const Hypothesis& best) {
+  constexpr double kSigmasPierced = 2.0;  // right poses: up to 1.6, of thin scans of a wood
   const std::string found = "the best overlap found is " + percent(best.overlap());
   if (best.is_idle()) return {"too few surfaces are in both: " + found};
-  if (best.is_refuted())
+  const Best judged_best{best, of.jury.judged_by_rays(of.context, best.pose)};
+  if (is_refuted(judged_best))
     return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
-  const auto is_elsewhere = [&](const Pose& pose) {
-    constexpr double kApart = 0.25;  // widths
-    return (pose.translation - best.pose.translation).norm() > kApart * cloud.fine.width() ||
-           !is_same_place(pose, best.pose, cloud);
-  };
-  const auto has_score = [&](const Hypothesis& other) {
-    constexpr double kLess = 0.5;        // of the score of the best, for others to be rivals
-    constexpr double kLessKnown = 0.03;  // or of what is known of it
-    return other.score > best.score - std::max(kLess * std::abs(best.score),
-                                               kLessKnown * (best.there.known + best.back.known));
-  };
-  // Where little is in both, much of that is edges, and apart: far away, what is refuted must tell, too.
-  const auto is_worse = [&](const Hypothesis& other) {
-    const bool is_less = sigmas_worse(other, best) >= kSigmas;
-    return is_near(other.pose, best.pose, cloud)
-               ? is_less || jury.sigmas_worse_closely(other, best) >= kSigmas
-               : is_less && sigmas_more_refuted(other, best) >= kSigmas;
-  };
-  const auto is_rival = [&](const Hypothesis& other) {
-    return is_elsewhere(other.pose) && !other.is_idle() && has_score(other) && !is_worse(other);
-  };
-  const auto is_far = [&](const Hypothesis& other) { return !is_same_place(other.pose, best.pose, cloud); };
-  const auto is_far_rival = [&](const Hypothesis& other) { return is_far(other) && is_rival(other); };
-  if (std::any_of(judged.begin(), judged.end(), is_rival))
-    return {"it fits nearly as well elsewhere: " + found,
-            std::any_of(judged.begin(), judged.end(), is_far_rival)};
-  if (is_elsewhere(last)) return {"nothing holds it where it fits best: " + found};
-  return {};
+  if (sigmas_pierced(judged_best.by_rays) >= kSigmasPierced)
+    return {"rays of one cloud would go through " + percent(judged_best.by_rays.refuted_share()) +
+            " of the surfaces of the other: " + found};
+  const std::vector<Hypothesis> rivals = rivals_of(of, judged, judged_best);
+  if (rivals.empty()) return {};
+  return {"it fits nearly as well elsewhere: " + found,
+          std::any_of(rivals.begin(), rivals.end(), [&](const Hypothesis& other) {
+            return !is_same_place(other.pose, best.pose, of.cloud);
+          })};
 }
 
 /// An alignment, and its pose from the origin of one cloud to that of the other.
@@ -256,17 +317,29 @@ void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, Cl
 
 Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
   const Jury jury(cloud, reference);
+  const Case of{context, cloud, reference, jury};
   const std::vector<Hypothesis> judged = judge(context, cloud, reference, jury, local);
-  const Hypothesis& best = judged.front();
+  Hypothesis best = judged.front();
   Placed placed;
   placed.fit = last_fit(context, cloud, reference, best.pose);
+  // Where the last fit leaves the place that the ones before it found, it must rest in the other.
+  bool is_held = true;
+  if (is_elsewhere(placed.fit.pose, best.pose, cloud)) {
+    Hypothesis moved{placed.fit.pose, {}, {}, 0.0};
+    const FineFit again = last_fit(context, cloud, reference, moved.pose);
+    is_held = !is_elsewhere(again.pose, moved.pose, cloud);
+    jury.judge(moved);
+    if (is_held) best = moved, placed.fit = again;
+  }
   CloudAlignment& alignment = placed.alignment;
   tell_fit(placed.fit, cloud, reference, alignment);
   const Agreement::Counts &there = best.there.counts, &back = best.back.counts;
   alignment.overlap = share(there.same, there.known() + there.unknown);
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
-  const Doubt doubt = doubt_of(judged, placed.fit.pose, cloud, jury);
+  Doubt doubt = doubt_of(of, judged, best);
+  if (doubt.text.empty() && !is_held)
+    doubt.text = "nothing holds it where it fits best: the best overlap found is " + percent(best.overlap());
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;

@@ -39,21 +39,6 @@ std::vector<Hypothesis> distinct_of(std::vector<Hypothesis>& hypotheses, const K
   return distinct;
 }
 
-/// Without those that were fitted to just the pose of one before.
-std::vector<Hypothesis> without_twins(const std::vector<Hypothesis>& hypotheses, const Known& cloud) {
-  constexpr double kNear = 0.1;      // widths
-  constexpr double kTurned = 0.003;  // rad
-  std::vector<Hypothesis> distinct;
-  for (const Hypothesis& one : hypotheses)
-    if (std::none_of(distinct.begin(), distinct.end(), [&](const Hypothesis& other) {
-          return (one.pose.translation - other.pose.translation).norm() < kNear * cloud.fine.width() &&
-                 Eigen::AngleAxisd(Eigen::Matrix3d(one.pose.rotation.transpose() * other.pose.rotation))
-                         .angle() < kTurned;
-        }))
-      distinct.push_back(one);
-  return distinct;
-}
-
 Pose pose_of(const Candidate& candidate, double rise, const Verticals& verticals) {
   const Eigen::Matrix3d back = verticals.reference.transpose();
   return {back * Eigen::AngleAxisd(candidate.yaw, Eigen::Vector3d::UnitZ()) * verticals.cloud,
@@ -155,6 +140,20 @@ std::vector<Hypothesis> roughly_fitted(const Context& context, const Known& clou
 void sort_by_score(std::vector<Hypothesis>& hypotheses) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+}
+
+std::vector<Hypothesis> without_twins(const std::vector<Hypothesis>& hypotheses, const Known& cloud) {
+  constexpr double kNear = 0.1;      // widths
+  constexpr double kTurned = 0.003;  // rad
+  std::vector<Hypothesis> distinct;
+  for (const Hypothesis& one : hypotheses)
+    if (std::none_of(distinct.begin(), distinct.end(), [&](const Hypothesis& other) {
+          return (one.pose.translation - other.pose.translation).norm() < kNear * cloud.fine.width() &&
+                 Eigen::AngleAxisd(Eigen::Matrix3d(one.pose.rotation.transpose() * other.pose.rotation))
+                         .angle() < kTurned;
+        }))
+      distinct.push_back(one);
+  return distinct;
 }
 
 std::vector<Hypothesis> rough_hypotheses(const Context& context, const Known& cloud, const Known& reference,

@@ -11,6 +11,10 @@ namespace ray::align {
 
 void sort_by_score(std::vector<Hypothesis>& hypotheses);
 
+/// Without those that were fitted to just the pose of one before.
+[[nodiscard]] std::vector<Hypothesis> without_twins(const std::vector<Hypothesis>& hypotheses,
+                                                    const Known& cloud);
+
 /// The rotations that turn the vertical of either cloud upright, before one is turned about it onto the
 /// other.
 struct Verticals {

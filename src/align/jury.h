@@ -3,6 +3,7 @@
 
 #include "agreement.h"
 #include "patches.h"
+#include "sightlines.h"
 
 #include <raycloud/core/pose.h>
 #include <raycloud/exec/context.h>
@@ -18,6 +19,7 @@ struct Known {
   Surfaces surfaces;
   PatchLevel narrow, fine, middle, wide;  ///< cubes as wide as the surfaces', and two, four and eight times
   FreeCubes free;
+  std::vector<Segment> sightlines;  ///< an even choice
 };
 
 struct Hypothesis {
@@ -40,7 +42,7 @@ struct Hypothesis {
   }
   /// One cloud has much that is not in the other, and the other nearly nothing that is not in it: leaves,
   /// snow, or furniture. Of a wrong pose both have.
-  [[nodiscard]] bool is_refuted_by_one_only() const;
+  [[nodiscard]] bool is_refuted_by_one_only(double nearly_none = 0.02) const;
   [[nodiscard]] bool is_refuted() const {
     constexpr double kMostRefuted = 0.05;  // right poses: up to 4 %
     return refuted_share() > kMostRefuted && !is_refuted_by_one_only();
@@ -55,6 +57,10 @@ struct Hypothesis {
 /// The same of what is refuted alone.
 [[nodiscard]] double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best);
 
+/// Of a pose judged by rays: by how many standard errors these go through more surfaces than the hundredth
+/// that is usual of right poses.
+[[nodiscard]] double sigmas_pierced(const Hypothesis& by_rays);
+
 /// Judges poses from both sides, by an even choice of the patches of either cloud.
 class Jury {
  public:
@@ -65,6 +71,10 @@ class Jury {
   /// `sigmas_worse` of two poses near each other, by surfaces in cubes half as wide: what tells them apart is
   /// within a patch.
   [[nodiscard]] double sigmas_worse_closely(const Hypothesis& other, const Hypothesis& best) const;
+  /// The pose, and of all clean patches which ones rays of the other cloud go through: to a fraction of a
+  /// patch, where free cubes leave two patches before each surface untold. Of right poses that is less than 1
+  /// % of space, but for what has moved.
+  [[nodiscard]] Hypothesis judged_by_rays(const Context& context, const Pose& pose) const;
   /// The score of a pose by an eighth of the witnesses.
   [[nodiscard]] double glance(const Pose& pose) const;
 
@@ -76,7 +86,7 @@ class Jury {
   const Known& cloud_;
   const Known& reference_;
   double tolerance_;
-  Witnesses there_, back_, few_there_, few_back_, narrow_there_, narrow_back_;
+  Witnesses there_, back_, few_there_, few_back_, narrow_there_, narrow_back_, all_there_, all_back_;
 };
 
 /// Whether two poses put a cloud to the same place, within the width of a patch.

@@ -95,6 +95,15 @@ class PatchLevel {
     }
   }
 
+  /// Calls `visit(patch)` for all in a cube: cube i of an axis spans [i·width, (i+1)·width).
+  template <class Visit>
+  void each_in(const Eigen::Array<std::int64_t, 3, 1>& cube, const Visit& visit) const {
+    if (!(cube.abs() < std::int64_t{1} << 19).all()) return;
+    const Range* range = index_.find(key_of(cube.x(), cube.y(), cube.z()));
+    for (std::uint32_t k = 0; range != nullptr && k < range->count; ++k)
+      visit(patches_[range->first + k]);
+  }
+
  private:
   static constexpr double kMost = 1 << 19;
   struct Range {

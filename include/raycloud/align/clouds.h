@@ -45,6 +45,8 @@ struct CloudAlignment {
 /// Looks for the turn about the vertical and the shift, by correlation of both clouds as seen from above,
 /// then for the rigid transform that brings surfaces onto surfaces. Each of many hypotheses is judged by
 /// surfaces and by free space: what one cloud has where the rays of the other went through counts against it.
+/// The best is trusted only where hardly a ray of one cloud goes through a surface of the other, and where no
+/// other place at which the finest fit comes to rest is as good.
 /// The vertical may be wrong by some degrees. A bend is fitted to all patches of the rigid answer, together
 /// with its turn and shift, and what comes of it is judged anew.
 ///

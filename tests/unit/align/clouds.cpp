@@ -150,6 +150,26 @@ TEST(AlignClouds, TheLessOverlapWhereNothingSpeaksAgainstIt) {
   EXPECT_LT(found.overlap, 0.7);
 }
 
+/// The halves of the time in which a building was scanned, storey after storey, have little more than the
+/// stairs in common; two storeys off nearly all of one lies on the other.
+TEST(AlignClouds, DoubtsAnotherStorey) {
+  RayCloud early = building_scan(1, 600'000);
+  const double middle = 0.5 * (early.times.front() + early.times.back());
+  std::vector<std::uint8_t> is_early(early.size());
+  for (std::size_t i = 0; i < early.size(); ++i)
+    is_early[i] = early.times[i] <= middle ? 1 : 0;
+  RayCloud late = early;
+  early.select(is_early);
+  for (std::uint8_t& one : is_early)
+    one = 1 - one;
+  late.select(is_early);
+  const RayCloud rays = early;
+  const Pose moved = moved_by(130.0, {30.0, -20.0, 2.0});
+  early.transform(moved);
+  const CloudAlignment found = aligned_with(early, late);
+  if (found.doubt.empty()) expect_undone(found.pose, moved, rays, 0.05 * kDegree, 0.02);
+}
+
 TEST(AlignClouds, NeedsSurfaces) {
   const RayCloud room = room_scan(1, 5000);
   RayCloud none = room;
