@@ -79,8 +79,29 @@ void SeenThrough::each_cell_of_ball(const Eigen::Vector3d& point, const Visit& v
 SeenThrough::SeenThrough(Points points, double radius)
     : points_(std::move(points)), passes_(points_.size()), radius_(radius), width_(kBrickWidth * radius) {
   if (points_.empty()) return;
+  for (const Eigen::Vector3d& point : points_)
+    box_.extend(point);
+  const Eigen::Array3d furthest = box_.min().cwiseAbs().cwiseMax(box_.max().cwiseAbs());
+  const Eigen::Array3d reach = 1.001 * radius_ + 1e-9 * furthest;  // with room for rounding
+  box_ = {box_.min().array() - reach, box_.max().array() + reach};
   choose_cells();
   list_points();
+}
+
+/// Where a line is inside the box of all balls; nowhere if the second is less.
+std::pair<double, double> SeenThrough::inside_box(const Line& line) const {
+  double in = 0.0, out = std::numeric_limits<double>::infinity();
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const double to_min = box_.min()[a] - line.start[a], to_max = box_.max()[a] - line.start[a];
+    if (line.direction[a] == 0.0) {
+      if (to_min > 0.0 || to_max < 0.0) out = -1.0;
+      continue;
+    }
+    const double one = to_min / line.direction[a], other = to_max / line.direction[a];
+    in = std::max(in, std::min(one, other));
+    out = std::min(out, std::max(one, other));
+  }
+  return {in, out};
 }
 
 /// As many as hold all bricks beside each other, but not very many more than there are points.
@@ -175,16 +196,19 @@ void SeenThrough::add_points(std::span<const Listed> listed) {
 void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, bool bounded) {
   if (points_.empty()) return;
   const double length = (end - start).norm();
-  const double to = bounded ? length - radius_ : length;
+  double to = bounded ? length - radius_ : length;
   if (!(to > 0.0)) return;
   const Line line{start, (end - start) / length};
+  const auto [begins, ends] = inside_box(line);
+  to = std::min(to, ends);
+  if (!(begins < to)) return;
   std::array<std::uint32_t, 3> cell{}, step{};
   std::array<double, 3> next{}, each{};
   Eigen::Vector3d middle, to_next;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
     const double direction = line.direction[a];
-    const std::int64_t brick = brick_at(start[a], width_);
+    const std::int64_t brick = brick_at(start[a] + begins * direction, width_);
     cell[axis] = cells_.along(axis, brick);
     middle[a] = middle_of(brick, width_);
     const bool up = direction > 0.0;
@@ -197,7 +221,7 @@ void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, 
   }
   const Eigen::Vector3f along = line.direction.cast<float>();
   const double per_radius = 1.0 / radius_;
-  double in = 0.0;
+  double in = begins;
   for (std::int64_t bricks = 0; bricks < kMostBricks; ++bricks) {
     std::size_t axis = next[1] < next[0] ? 1 : 0;
     axis = next[2] < next[axis] ? 2 : axis;

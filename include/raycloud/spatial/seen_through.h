@@ -4,11 +4,13 @@
 #include <raycloud/spatial/voxel_key.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ray {
@@ -99,9 +101,11 @@ class SeenThrough {
   template <class Visit>
   void each_near(std::uint32_t begin, std::uint32_t end, const Way& way, const Visit& visit) const;
   void visit(std::size_t cell, const Line& line, const Way& way);
+  [[nodiscard]] std::pair<double, double> inside_box(const Line& line) const;
 
   Points points_;
   std::vector<std::uint32_t> passes_;
+  Eigen::AlignedBox3d box_;  // of all balls: rays are followed only there
   double radius_;
   double width_;  // of a brick
   Cells cells_;
