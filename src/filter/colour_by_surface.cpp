@@ -128,7 +128,12 @@ std::vector<SurfaceColour> colour_block(const Context& context, Block<SeenPoint>
                 normals[found.place] = pack_direction(found.surfel.normal);
               });
           },
-          {.radius = [&](std::size_t) { return neighbour_reach; }, .neighbours = lit_neighbours});
+          {.radius = [&](std::size_t) { return neighbour_reach; },
+           .neighbours =
+               [&](NeighbourSearch& search, std::size_t place) {
+                 return search.places_facing(place, kLitSurfel.neighbours, neighbour_reach,
+                                             unpack_direction(normals[place]));
+               }});
   if (!lit) return colours;
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {

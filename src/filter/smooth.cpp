@@ -55,8 +55,8 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   auto planes = touched_vector<LocalPlane>(context, tree.size());
   const auto neighbours_of = [&](NeighbourSearch& search, std::size_t place) {
     const LocalPlane& plane = planes[place];
-    return search.nearest_facing(place, SurfaceFit::kMost, kWider * static_cast<double>(plane.reach),
-                                 plane.normal.cast<double>());
+    return search.places_facing(place, SurfaceFit::kMost, kWider * static_cast<double>(plane.reach),
+                                plane.normal.cast<double>());
   };
   NeededPlaces(block, tree)
       .work_on(

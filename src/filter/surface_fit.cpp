@@ -130,7 +130,7 @@ constexpr auto add_fast = add_plain;
 
 }  // namespace
 
-double SurfaceFit::height(std::size_t place, std::span<const Neighbour> neighbours) {
+double SurfaceFit::height(std::size_t place, std::span<const std::uint32_t> neighbours) {
   const LocalPlane& own = planes_[place];
   take(place, own, neighbours);
   Axes axes;
@@ -143,7 +143,7 @@ double SurfaceFit::height(std::size_t place, std::span<const Neighbour> neighbou
 }
 
 /// The planes of the point and its neighbours.
-void SurfaceFit::take(std::size_t place, const LocalPlane& own, std::span<const Neighbour> neighbours) {
+void SurfaceFit::take(std::size_t place, const LocalPlane& own, std::span<const std::uint32_t> neighbours) {
   constexpr float kLeastUnit = 1e-9F;  // m
   constexpr std::uint32_t kExponent = 0x7f800000;
   unit_ = std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::max(own.reach, kLeastUnit)) & kExponent);
@@ -166,8 +166,8 @@ void SurfaceFit::take(std::size_t place, const LocalPlane& own, std::span<const 
     ++count;
   };
   add(place);
-  for (const Neighbour& neighbour : neighbours)
-    add(neighbour.place);
+  for (const std::uint32_t neighbour : neighbours)
+    add(neighbour);
   // What fills up the last lanes has no normal, and so no weight.
   for (; count % SeenPlanes::kLanes != 0; ++count)
     seen_.normal_x[count] = seen_.normal_y[count] = seen_.normal_z[count] = 0.0F;

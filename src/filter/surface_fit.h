@@ -41,10 +41,10 @@ class SurfaceFit {
 
   /// Of the surface from the point, along the normal of its plane, m. Depends on the neighbours, not on their
   /// order. Precondition: the point has a plane.
-  [[nodiscard]] double height(std::size_t place, std::span<const Neighbour> neighbours);
+  [[nodiscard]] double height(std::size_t place, std::span<const std::uint32_t> neighbours);
 
  private:
-  void take(std::size_t place, const LocalPlane& own, std::span<const Neighbour> neighbours);
+  void take(std::size_t place, const LocalPlane& own, std::span<const std::uint32_t> neighbours);
 
   const PointTree& tree_;
   std::span<const LocalPlane> planes_;

@@ -33,7 +33,7 @@ NeededPlaces::NeededPlaces(const Block<SeenPoint>& block, const PointTree& tree)
 }
 
 void NeededPlaces::work_on(const Context& context, std::uint8_t rings, const Work& work,
-                           const Neighbourhood& around) {
+                           const Around& around) {
   work_on_ring(context, 0, work);
   if (ring_.empty()) return;
   for (std::uint8_t ring = 1; ring <= rings; ++ring) {
@@ -48,15 +48,15 @@ void NeededPlaces::work_on_ring(const Context& context, std::uint8_t ring, const
   });
 }
 
-void NeededPlaces::find_ring(const Context& context, std::uint8_t ring, const Neighbourhood& around) {
+void NeededPlaces::find_ring(const Context& context, std::uint8_t ring, const Around& around) {
   const auto ring_of = [&](std::size_t place) { return std::atomic_ref(ring_[place]); };
   for_each_place(context, tree_, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     for (std::size_t place = begin; place < end; ++place) {
       if (ring_of(place).load(std::memory_order_relaxed) != ring - 1) continue;
       if (block_.has_only_own(tree_.point(place), around.radius(place))) continue;
-      for (const Neighbour& neighbour : around.neighbours(search, place))
-        if (ring_of(neighbour.place).load(std::memory_order_relaxed) == kNoRing)
-          ring_of(neighbour.place).store(ring, std::memory_order_relaxed);
+      for (const std::uint32_t neighbour : around.neighbours(search, place))
+        if (ring_of(neighbour).load(std::memory_order_relaxed) == kNoRing)
+          ring_of(neighbour).store(ring, std::memory_order_relaxed);
     }
   });
 }

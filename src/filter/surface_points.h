@@ -43,13 +43,13 @@ class NeededPlaces {
   NeededPlaces(const Block<SeenPoint>& block, const PointTree& tree);
 
   /// What the neighbours of a place are when it has been worked on.
-  struct Neighbourhood {
+  struct Around {
     std::function<double(std::size_t place)> radius;  ///< m: none is further
-    std::function<std::span<const Neighbour>(NeighbourSearch&, std::size_t place)> neighbours;
+    std::function<std::span<const std::uint32_t>(NeighbourSearch&, std::size_t place)> neighbours;
   };
   /// `work` on all own places; then on their neighbours, those of these, and so on, so many rings; on each
   /// place once.
-  void work_on(const Context& context, std::uint8_t rings, const Work& work, const Neighbourhood& around);
+  void work_on(const Context& context, std::uint8_t rings, const Work& work, const Around& around);
 
   /// Whether a place is own, or in one of the first so many rings.
   [[nodiscard]] bool has(std::size_t place, std::uint8_t rings) const {
@@ -58,7 +58,7 @@ class NeededPlaces {
 
  private:
   void work_on_ring(const Context& context, std::uint8_t ring, const Work& work);
-  void find_ring(const Context& context, std::uint8_t ring, const Neighbourhood& around);
+  void find_ring(const Context& context, std::uint8_t ring, const Around& around);
 
   static constexpr std::uint8_t kNoRing = 0xff;
 

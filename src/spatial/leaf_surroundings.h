@@ -34,6 +34,10 @@ class LeafSurroundings {
   /// Precondition: has(place).
   std::optional<std::span<const Neighbour>> nearest(std::size_t place, std::size_t count, double reach,
                                                     const Eigen::Vector3d* side);
+  /// The places of all that are within reach, and of the side; nothing if they might lie outside of what was
+  /// gathered, or are more than `most`. Precondition: has(place).
+  std::optional<std::span<const std::uint32_t>> within(std::size_t place, std::size_t most, double reach,
+                                                       const Eigen::Vector3d& side);
   /// How far a box (m) reaches from that of the leaf at most. Precondition: something is gathered.
   [[nodiscard]] double furthest(const Eigen::Vector3d& middle, const Eigen::Vector3d& half) const;
   /// As NeighbourSearch has it. Precondition: the box of the body is within reach().

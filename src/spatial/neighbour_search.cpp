@@ -48,6 +48,17 @@ class NeighbourSearch::Impl {
     return last_;
   }
 
+  std::span<const std::uint32_t> places_facing(std::size_t place, std::size_t count, double reach,
+                                               const Eigen::Vector3d& side) {
+    go_to(place);
+    if (around_.has(place))
+      if (const auto within = around_.within(place, count, reach, side)) return *within;
+    places_.clear();
+    for (const Neighbour& neighbour : search(place, count, reach, &side))
+      places_.push_back(neighbour.place);
+    return places_;
+  }
+
   PlacesInside inside(std::size_t place, const SearchedBody& body) {
     go_to(place);
     const Eigen::Vector3d half = half_extent(body.shape);
@@ -68,6 +79,7 @@ class NeighbourSearch::Impl {
     go_to(place);
     for (; !around_.has(place) && tries_ > 0; reach *= kLess)
       gather(reach);
+    is_new_ = false;
   }
 
  private:
@@ -144,12 +156,12 @@ class NeighbourSearch::Impl {
 
   TreeWalk walk_;
   LeafSurroundings around_;
-  bool is_new_ = false;  // nothing was searched yet from this leaf
+  bool is_new_ = false;  // nothing tells yet how far to gather around this leaf
   int tries_ = 0;
   std::size_t most_asked_ = 0, most_asked_before_ = 0;  // of a search, in the leaf and in the one before
   std::span<const Neighbour> last_;                     // valid until the next search
   Furthest furthest_, furthest_before_;
-  std::vector<std::uint32_t> in_box_;
+  std::vector<std::uint32_t> in_box_, places_;
 };
 
 NeighbourSearch::NeighbourSearch(const PointTree& tree) : tree_(tree), impl_(std::make_unique<Impl>(tree)) {}
@@ -162,6 +174,11 @@ std::span<const Neighbour> NeighbourSearch::nearest(std::size_t place, std::size
 std::span<const Neighbour> NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
                                                            const Eigen::Vector3d& normal) {
   return impl_->search(place, count, reach, &normal);
+}
+
+std::span<const std::uint32_t> NeighbourSearch::places_facing(std::size_t place, std::size_t count,
+                                                              double reach, const Eigen::Vector3d& normal) {
+  return impl_->places_facing(place, count, reach, normal);
 }
 
 PlacesInside NeighbourSearch::inside(std::size_t place, const SearchedBody& body) {

@@ -52,6 +52,10 @@ class NeighbourSearch {
   std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
                                             const Eigen::Vector3d& normal);
 
+  /// The places of these alone: a tenth faster, where there are fewer within reach than `count`.
+  std::span<const std::uint32_t> places_facing(std::size_t place, std::size_t count, double reach,
+                                               const Eigen::Vector3d& normal);
+
   /// All points in a body, the one at `place` too. Any body will do; one that lies around the place, no wider
   /// than its neighbours, is fast. Valid until the next call. About 0.1 µs.
   PlacesInside inside(std::size_t place, const SearchedBody& body);
