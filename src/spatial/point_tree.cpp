@@ -42,13 +42,35 @@ void extend(Box& box, const Coordinates& low, const Coordinates& high) {
   }
 }
 
-/// Cuts the points at their median across the box; of points on the cut, the earlier ones come first.
+/// Those below a value come first; returns how many. Every point moves whichever side it is of, as guessing
+/// the side of half of them wrongly would take longer.
+std::size_t divide_at(std::span<IndexedPoint> points, std::size_t axis, double value) {
+  std::size_t below = 0;
+  for (IndexedPoint& point : points) {
+    const IndexedPoint moved = point;
+    point = points[below];
+    points[below] = moved;
+    below += moved.at[axis] < value ? 1 : 0;
+  }
+  return below;
+}
+
+/// Cuts the points across the box, near their median: at that of a sample, if it leaves a quarter of them on
+/// either side.
 std::size_t cut(std::span<IndexedPoint> points, std::size_t axis) {
-  const std::size_t middle = points.size() / 2;
+  constexpr std::size_t kSample = 25, kMany = 2 * kSample;
+  const std::size_t size = points.size();
+  if (size > kMany) {
+    std::array<double, kSample> sample;
+    for (std::size_t i = 0; i < kSample; ++i)
+      sample[i] = points[(2 * i + 1) * size / (2 * kSample)].at[axis];
+    std::nth_element(sample.begin(), sample.begin() + kSample / 2, sample.end());
+    const std::size_t below = divide_at(points, axis, sample[kSample / 2]);
+    if (below >= size / 4 && below <= size - size / 4) return below;
+  }
+  const std::size_t middle = size / 2;
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(middle), points.end(),
-                   [axis](const IndexedPoint& a, const IndexedPoint& b) {
-                     return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.index < b.index;
-                   });
+                   [axis](const IndexedPoint& a, const IndexedPoint& b) { return a.at[axis] < b.at[axis]; });
   return middle;
 }
 
