@@ -39,21 +39,30 @@ struct World {
   bool is_hard = false;  ///< more than is asked for: only wrong answers have a bar
 };
 
-/// The part of a cloud where dot(direction, p) is below a limit: as raysplit cuts it, so that nothing is
-/// known of the rest.
+/// The scan of that part of the world where dot(direction, p) is below a limit, so that nothing is known of
+/// the rest. The world is cut, not what was measured of it: a cut of measured ends along a wall would leave
+/// those that noise moved to one side.
 ray::RayCloud part_of(ray::RayCloud rays, const Eigen::Vector3d& direction, double limit) {
   std::vector<std::uint8_t> mask(rays.size());
+  const auto x = rays.extra("true_x")->values<double>(), y = rays.extra("true_y")->values<double>(),
+             z = rays.extra("true_z")->values<double>();
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const double at_start = direction.dot(rays.starts[i]) - limit,
-                 at_end = direction.dot(rays.ends[i]) - limit;
+    const Eigen::Vector3d true_end(x[i], y[i], z[i]), way = true_end - rays.starts[i];
+    const double at_start = direction.dot(rays.starts[i]) - limit, at_end = direction.dot(true_end) - limit;
     mask[i] = at_start < 0.0 || at_end < 0.0 ? 1 : 0;
     if ((at_start >= 0.0) == (at_end >= 0.0)) continue;
-    const Eigen::Vector3d crossing =
-        rays.starts[i] + (rays.ends[i] - rays.starts[i]) * (at_start / (at_start - at_end));
-    if (at_end >= 0.0) rays.bounded[i] = 0;
-    (at_end >= 0.0 ? rays.ends[i] : rays.starts[i]) = crossing;
+    const double part = at_start / (at_start - at_end);
+    if (at_end >= 0.0) {
+      rays.bounded[i] = 0;
+      rays.ends[i] = rays.starts[i] + part * way;
+    } else {                              // what begins there ends there, whatever the noise
+      constexpr double kShortest = 1e-3;  // m
+      const double measured = (rays.ends[i] - rays.starts[i]).norm() - kShortest;
+      rays.starts[i] += std::min(part, measured / way.norm()) * way;
+    }
   }
   rays.select(mask);
+  rays.extras.clear();
   return rays;
 }
 
@@ -131,7 +140,7 @@ ray::Scene reversed(ray::Scene scene) {
 
 Scans scans_of(const World& world, std::uint64_t seed) {
   const auto scan = [&](const ray::Scene& scene, std::uint64_t rays, std::uint64_t noise) {
-    return read_all({}, *simulate(scene, {.rays = rays, .seed = noise}));
+    return read_all({}, *simulate(scene, {.rays = rays, .truth = true, .seed = noise}));
   };
   return {scan(world.first, world.rays, 2 * seed), scan(world.second, world.reference_rays, 2 * seed + 1)};
 }
@@ -263,8 +272,8 @@ void halves_row(int pairs) {
   for (int i = 0; i < pairs; ++i) {
     const auto number = static_cast<std::uint64_t>(i);
     const ray::Scene scene = make_scene(ray::SceneKind::building, 2 + other_worlds() + number);
-    ray::RayCloud first =
-        read_all({}, *simulate(scene, {.rays = i % 2 == 0 ? 1'000'000U : 600'000U, .seed = number}));
+    ray::RayCloud first = read_all(
+        {}, *simulate(scene, {.rays = i % 2 == 0 ? 1'000'000U : 600'000U, .truth = true, .seed = number}));
     const double middle = 0.5 * (first.times.front() + first.times.back());
     std::vector<std::uint8_t> is_early(first.size());
     for (std::size_t k = 0; k < first.size(); ++k)

@@ -6,6 +6,7 @@
 
 #include <raycloud/align/clouds.h>
 #include <raycloud/core/error.h>
+#include <raycloud/spatial/symmetric_eigen.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -47,10 +48,11 @@ std::string percent(double share_of_one) {
   return std::to_string(std::lround(100.0 * share_of_one)) + " %";
 }
 
-/// The covariance of turns and shifts: the residuals stand for noise. Patches of one wall share what is wrong
-/// with it, so that there are fewer that are independent.
+/// Patches of one wall share what is wrong with it: so many tell as much as one that is independent.
+constexpr double kTogether = 10.0;
+
+/// The covariance of turns and shifts: the residuals stand for noise.
 Matrix6 covariance_of(const FineFit& fit) {
-  constexpr double kTogether = 10.0;  // patches
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(fit.information);
   const Vector6 values = solver.eigenvalues().cwiseMax(1e-12 * solver.eigenvalues().maxCoeff() + 1e-300);
   return kTogether * fit.variance * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
@@ -200,6 +202,13 @@ bool is_near(const Pose& a, const Pose& b, const Known& cloud) {
          Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() < kTurn;
 }
 
+/// The patches leave some way open, by two standard errors, to shift the cloud elsewhere.
+bool is_loose(const FineFit& fit, const Known& cloud) {
+  constexpr double kSigmas = 2.0, kApart = 0.25;  // of a width, as elsewhere
+  const Eigen::Matrix3d shifts = covariance_of(fit).bottomRightCorner<3, 3>();
+  return !(kSigmas * std::sqrt(symmetric_eigen(shifts).values[2]) < kApart * cloud.fine.width());
+}
+
 /// What is asked of the hypotheses: the clouds, and the jury that judged them.
 struct Case {
   const Context& context;
@@ -315,6 +324,10 @@ void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, Cl
   alignment.centre = fit.centre + reference.surfaces.survey.origin;
 }
 
+std::string not_held(double overlap) {
+  return "nothing holds it where it fits best: the best overlap found is " + percent(overlap);
+}
+
 Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
   const Jury jury(cloud, reference);
   const Case of{context, cloud, reference, jury};
@@ -338,8 +351,7 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
   Doubt doubt = doubt_of(of, judged, best);
-  if (doubt.text.empty() && !is_held)
-    doubt.text = "nothing holds it where it fits best: the best overlap found is " + percent(best.overlap());
+  if (doubt.text.empty() && !is_held) doubt.text = not_held(best.overlap());
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;
@@ -377,7 +389,10 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   Placed placed = place(context, cloud, reference, rule.local);
   placed.fit = narrower_fit(context, cloud_source, reference_source, cloud, reference, placed.fit);
   tell_fit(placed.fit, cloud, reference, placed.alignment);
-  CloudAlignment alignment = placed.alignment;
+  CloudAlignment& rigid = placed.alignment;
+  if (rigid.doubt.empty() && is_loose(placed.fit, cloud))
+    rigid.doubt = not_held(std::max(rigid.overlap, rigid.reference_overlap));
+  CloudAlignment alignment = rigid;
   // Where another place is as good, a bend does not tell which; but what is bent may fit here and there
   // alike, and is judged anew.
   if (rule.nonrigid && (rule.local || !placed.is_elsewhere)) {
