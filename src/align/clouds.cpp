@@ -324,10 +324,6 @@ void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, Cl
   alignment.centre = fit.centre + reference.surfaces.survey.origin;
 }
 
-std::string not_held(double overlap) {
-  return "nothing holds it where it fits best: the best overlap found is " + percent(overlap);
-}
-
 Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
   const Jury jury(cloud, reference);
   const Case of{context, cloud, reference, jury};
@@ -351,7 +347,8 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
   Doubt doubt = doubt_of(of, judged, best);
-  if (doubt.text.empty() && !is_held) doubt.text = not_held(best.overlap());
+  if (doubt.text.empty() && (!is_held || is_loose(placed.fit, cloud)))
+    doubt.text = "nothing holds it where it fits best: the best overlap found is " + percent(best.overlap());
   alignment.doubt = doubt.text;
   placed.is_elsewhere = doubt.is_elsewhere;
   return placed;
@@ -389,10 +386,7 @@ CloudAlignment align_clouds(const Context& context, RaySource& cloud_source, Ray
   Placed placed = place(context, cloud, reference, rule.local);
   placed.fit = narrower_fit(context, cloud_source, reference_source, cloud, reference, placed.fit);
   tell_fit(placed.fit, cloud, reference, placed.alignment);
-  CloudAlignment& rigid = placed.alignment;
-  if (rigid.doubt.empty() && is_loose(placed.fit, cloud))
-    rigid.doubt = not_held(std::max(rigid.overlap, rigid.reference_overlap));
-  CloudAlignment alignment = rigid;
+  CloudAlignment alignment = placed.alignment;
   // Where another place is as good, a bend does not tell which; but what is bent may fit here and there
   // alike, and is judged anew.
   if (rule.nonrigid && (rule.local || !placed.is_elsewhere)) {

@@ -71,24 +71,17 @@ class SurfelFinder::Impl {
     for (std::size_t i = 0; i < count_; ++i)
       look_at_nearest(works_[i], places[i]);
     queue_.make();
-    if (rule_.by_side) {
-      for (Work& work : works())
-        look_wide(work);
+    const auto each = [&](void (Impl::*step)(Work&)) {
+      for (std::size_t i = 0; i < count_; ++i)
+        (this->*step)(works_[i]);
       queue_.make();
-      for (Work& work : works())
-        look_from_sides(work);
-      queue_.make();
-      for (Work& work : works())
-        look_again(work);
-      queue_.make();
-    }
-    if (rule_.past_rings) {
-      for (Work& work : works())
-        look_past_ring(work);
-      queue_.make();
-      for (Work& work : works())
-        end_ring(work);
-    }
+    };
+    if (rule_.by_side)
+      for (const auto step : {&Impl::look_wide, &Impl::look_from_sides, &Impl::look_again})
+        each(step);
+    if (rule_.past_rings)
+      for (const auto step : {&Impl::look_past_ring, &Impl::end_ring})
+        each(step);
     for (std::size_t i = 0; i < count_; ++i)
       results_[i] = {places[i], *works_[i].result, &works_[i].around};
     return {results_.data(), count_};
@@ -113,8 +106,6 @@ class SurfelFinder::Impl {
     const Surfel *first, *other, *result;  ///< one of these:
     Surfel nearest, wide, of_first, of_other, last;
   };
-
-  [[nodiscard]] std::span<Work> works() { return {works_.data(), count_}; }
 
   [[nodiscard]] Eigen::Vector3d to_sensor(const Work& work) const {
     return unpack_direction(search_.tree().to_sensor(work.around.place()));
