@@ -137,7 +137,12 @@ float LeafSurroundings::distance2_of_nearest(std::size_t count, float within2) c
 }
 
 /// The nearest of those found, by their distances in double.
-std::span<const Neighbour> LeafSurroundings::exact(std::size_t place, std::size_t count, double reach2) {
+LeafSurroundings::Nearest LeafSurroundings::exact(std::size_t place, std::size_t count, double reach2,
+                                                  Neighbourhood* into) {
+  if (into != nullptr && near_.size <= count) {
+    into->fill(tree_, place, std::span<const std::uint32_t>(near_.place.data(), near_.size));
+    if (into->furthest2() <= reach2) return {{}, near_.size, into->furthest2()};
+  }
   const double x = tree_.x_[place], y = tree_.y_[place], z = tree_.z_[place];
   std::size_t kept = 0;
   for (std::size_t i = 0; i < near_.size; ++i) {
@@ -151,12 +156,16 @@ std::span<const Neighbour> LeafSurroundings::exact(std::size_t place, std::size_
     std::sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(kept), nearer_first(tree_));
     kept = count;
   }
-  return {found_.data(), kept};
+  Nearest result{{found_.data(), kept}, kept};
+  for (const Neighbour& neighbour : result.list)
+    result.furthest2 = std::max(result.furthest2, neighbour.distance2);
+  if (into != nullptr) into->fill(tree_, place, result.list);
+  return result;
 }
 
-std::optional<std::span<const Neighbour>> LeafSurroundings::nearest(std::size_t place, std::size_t count,
-                                                                    double reach,
-                                                                    const Eigen::Vector3d* side) {
+std::optional<LeafSurroundings::Nearest> LeafSurroundings::nearest(std::size_t place, std::size_t count,
+                                                                   double reach, const Eigen::Vector3d* side,
+                                                                   Neighbourhood* into) {
   const std::size_t self = place - leaf_.first;
   const bool reach_is_known = reach <= reach_;
   const float whole = static_cast<float>(std::min(reach, reach_)) * 1.000001F + 2.0F * slack_;
@@ -167,19 +176,16 @@ std::optional<std::span<const Neighbour>> LeafSurroundings::nearest(std::size_t 
     return {};
   }
   if (near_.size > count) drop_further(count, within);
-  const std::span<const Neighbour> result = exact(place, count, reach * reach);
-  if (result.size() < count) return result;
-  double furthest2 = 0.0;
-  for (const Neighbour& neighbour : result)
-    furthest2 = std::max(furthest2, neighbour.distance2);
-  if (!reach_is_known && !(furthest2 <= reach_ * reach_)) {
-    bound2_ = furthest2;
+  const Nearest result = exact(place, count, reach * reach, into);
+  if (result.size < count) return result;
+  if (!reach_is_known && !(result.furthest2 <= reach_ * reach_)) {
+    bound2_ = result.furthest2;
     return {};
   }
   if (side == nullptr) {
     if (solved_count_ != count) solved_.fill(kFar);
     solved_count_ = count;
-    solved_[self] = static_cast<float>(std::sqrt(furthest2)) * 1.00001F;
+    solved_[self] = static_cast<float>(std::sqrt(result.furthest2)) * 1.00001F;
   }
   return result;
 }

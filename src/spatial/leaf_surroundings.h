@@ -4,6 +4,8 @@
 #include "point_sieve.h"
 #include "tree_walk.h"
 
+#include <raycloud/spatial/neighbourhood.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,10 +32,15 @@ class LeafSurroundings {
   /// What was gathered is all within this distance of the leaf, m; 0 after forget.
   [[nodiscard]] double reach() const { return reach_; }
 
-  /// The nearest, as NeighbourSearch has it; nothing if they might lie outside of what was gathered.
-  /// Precondition: has(place).
-  std::optional<std::span<const Neighbour>> nearest(std::size_t place, std::size_t count, double reach,
-                                                    const Eigen::Vector3d* side);
+  struct Nearest {
+    std::span<const Neighbour> list;  ///< empty if they were put elsewhere
+    std::size_t size = 0;
+    double furthest2 = 0.0;  ///< m²
+  };
+  /// The nearest, as NeighbourSearch has it, `into` something or as a list; nothing if they might lie outside
+  /// of what was gathered. Precondition: has(place).
+  std::optional<Nearest> nearest(std::size_t place, std::size_t count, double reach,
+                                 const Eigen::Vector3d* side, Neighbourhood* into);
   /// The places of all that are within reach, and of the side; nothing if they might lie outside of what was
   /// gathered, or are more than `most`. Precondition: has(place).
   std::optional<std::span<const std::uint32_t>> within(std::size_t place, std::size_t most, double reach,
@@ -59,7 +66,7 @@ class LeafSurroundings {
   void drop_further(std::size_t count, float within);
   void find_bound(std::size_t place, std::size_t count, const Eigen::Vector3d* side);
   [[nodiscard]] float distance2_of_nearest(std::size_t count, float within2) const;
-  [[nodiscard]] std::span<const Neighbour> exact(std::size_t place, std::size_t count, double reach2);
+  [[nodiscard]] Nearest exact(std::size_t place, std::size_t count, double reach2, Neighbourhood* into);
 
   const PointTree& tree_;
   TreeWalk::Leaf leaf_;

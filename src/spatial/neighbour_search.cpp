@@ -2,6 +2,7 @@
 #include "tree_walk.h"
 
 #include <raycloud/spatial/neighbour_search.h>
+#include <raycloud/spatial/neighbourhood.h>
 
 #include <algorithm>
 #include <array>
@@ -16,36 +17,39 @@ class NeighbourSearch::Impl {
  public:
   explicit Impl(const PointTree& tree) : walk_(tree), around_(tree) {}
 
+  /// As a list, or `into` something.
   std::span<const Neighbour> search(std::size_t place, std::size_t count, double reach,
-                                    const Eigen::Vector3d* side) {
+                                    const Eigen::Vector3d* side, Neighbourhood* into = nullptr) {
     assert(count <= kMost && place < walk_.tree().size());
-    if (count == 0) return {};
+    if (count == 0) {
+      if (into != nullptr) into->fill(walk_.tree(), place, std::span<const Neighbour>());
+      return {};
+    }
     go_to(place);
     const bool is_new = std::exchange(is_new_, false);
     most_asked_ = std::max(most_asked_, count);
     // Who says how far it is, to about what was found last, knows.
-    if (is_new && reach < kWide * furthest(last_)) gather(kWideOfReach * reach);
+    if (is_new && reach < kWide * furthest_found_) gather(kWideOfReach * reach);
     const bool is_guess = is_new && !around_.has(place) && furthest_before_.count > 0 &&
                           gather(kWide * furthest_before_.mean());
-    std::optional<std::span<const Neighbour>> found;
+    std::optional<LeafSurroundings::Nearest> found;
     double within2 = reach * reach;
     if (around_.has(place)) {
-      found = around_.nearest(place, count, reach, side);
+      found = around_.nearest(place, count, reach, side, into);
       if (!found) {
         within2 = std::min(within2, around_.bound2());
-        if (widen(std::sqrt(within2))) found = around_.nearest(place, count, reach, side);
+        if (widen(std::sqrt(within2))) found = around_.nearest(place, count, reach, side, into);
       }
     }
-    if (!found) {
-      found = walk_.nearest(place, count, within2, side);
-      if ((is_guess || !around_.has(place)) && found->size() == count) {
-        const double furthest_found = furthest(*found);
-        if (!gather(kWide * furthest_found * further_asked(count))) gather(kLessWide * furthest_found);
-      }
-    }
-    last_ = *found;
-    if (last_.size() == count) furthest_.add(count, furthest(last_));
-    return last_;
+    const bool is_walk = !found;
+    if (is_walk) found = walk(place, count, within2, side, into);
+    furthest_found_ = std::sqrt(found->furthest2);
+    if (found->size < count) return found->list;
+    furthest_.add(count, furthest_found_);
+    if (is_walk && (is_guess || !around_.has(place)) &&
+        !gather(kWide * furthest_found_ * further_asked(count)))
+      gather(kLessWide * furthest_found_);
+    return found->list;
   }
 
   std::span<const std::uint32_t> places_facing(std::size_t place, std::size_t count, double reach,
@@ -95,11 +99,15 @@ class NeighbourSearch::Impl {
     }
     [[nodiscard]] double mean() const { return sum / count; }
   };
-  static double furthest(std::span<const Neighbour> neighbours) {
+
+  LeafSurroundings::Nearest walk(std::size_t place, std::size_t count, double within2,
+                                 const Eigen::Vector3d* side, Neighbourhood* into) {
+    const std::span<const Neighbour> list = walk_.nearest(place, count, within2, side);
+    if (into != nullptr) into->fill(walk_.tree(), place, list);
     double furthest2 = 0.0;
-    for (const Neighbour& neighbour : neighbours)
+    for (const Neighbour& neighbour : list)
       furthest2 = std::max(furthest2, neighbour.distance2);
-    return std::sqrt(furthest2);
+    return {list, list.size(), furthest2};
   }
 
   /// Half the box of a body, m, and a little more, for rounding: by the diagonal of the inverse.
@@ -159,7 +167,7 @@ class NeighbourSearch::Impl {
   bool is_new_ = false;  // nothing tells yet how far to gather around this leaf
   int tries_ = 0;
   std::size_t most_asked_ = 0, most_asked_before_ = 0;  // of a search, in the leaf and in the one before
-  std::span<const Neighbour> last_;                     // valid until the next search
+  double furthest_found_ = 0.0;                         // of the last search, m
   Furthest furthest_, furthest_before_;
   std::vector<std::uint32_t> in_box_, places_;
 };
@@ -174,6 +182,15 @@ std::span<const Neighbour> NeighbourSearch::nearest(std::size_t place, std::size
 std::span<const Neighbour> NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
                                                            const Eigen::Vector3d& normal) {
   return impl_->search(place, count, reach, &normal);
+}
+
+void NeighbourSearch::nearest(std::size_t place, std::size_t count, double reach, Neighbourhood& around) {
+  impl_->search(place, count, reach, nullptr, &around);
+}
+
+void NeighbourSearch::nearest_facing(std::size_t place, std::size_t count, double reach,
+                                     const Eigen::Vector3d& normal, Neighbourhood& around) {
+  impl_->search(place, count, reach, &normal, &around);
 }
 
 std::span<const std::uint32_t> NeighbourSearch::places_facing(std::size_t place, std::size_t count,

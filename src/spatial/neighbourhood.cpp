@@ -8,6 +8,7 @@
 #include <cstring>
 #ifdef __x86_64__
 #include <immintrin.h>
+#define RAY_AVX2 [[gnu::target("avx2,popcnt")]]
 #endif
 
 namespace ray {
@@ -15,6 +16,7 @@ namespace {
 
 /// Four at once where the processor can, else two and two.
 using FourDoubles [[gnu::vector_size(32)]] = double;
+using FourFloats [[gnu::vector_size(16)]] = float;
 
 /// Numbers of those in a set, and how many; then up to three times the number of one that is not there.
 struct ChosenNeighbours {
@@ -33,6 +35,53 @@ struct ChosenNeighbours {
 
 /// The inner loops, for processors with and without AVX2.
 struct Neighbourhood::Kernels {
+  /// Of lanes, with at least one that is nobody's.
+  static std::size_t whole_groups(std::size_t size) { return (size / kLanes + 1) * kLanes; }
+
+  /// All that the tree knows of the places.
+  [[gnu::always_inline]] static void look_up(Neighbourhood& around) {
+    const PointTree& tree = *around.tree_;
+    const double x = tree.x_[around.place_], y = tree.y_[around.place_], z = tree.z_[around.place_];
+    FourDoubles most{};
+    for (std::size_t i = 0; i < whole_groups(around.size_); i += 4) {
+      const std::uint32_t* n = around.places_.data() + i;
+      const FourDoubles dx = four(tree.x_.data(), n) - x, dy = four(tree.y_.data(), n) - y,
+                        dz = four(tree.z_.data(), n) - z;
+      const FourDoubles distance2 = dx * dx + dy * dy + dz * dz;
+      most = distance2 > most ? distance2 : most;
+      put(dx, around.x_, i), put(dy, around.y_, i), put(dz, around.z_, i);
+      put(distance2, around.distance2_, i);
+      put(__builtin_convertvector(distance2, FourFloats), around.rounded2_, i);
+      look_up_directions(around, i);
+    }
+    around.furthest2_ = greatest(most);
+  }
+  [[gnu::always_inline]] static void look_up_directions(Neighbourhood& around, std::size_t i) {
+    const std::vector<PackedDirection>& to_sensor = around.tree_->to_sensor_;
+    const std::uint32_t* n = around.places_.data() + i;
+#ifdef __SSE2__
+    const auto load = [&](std::size_t lane) {
+      return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(to_sensor[n[lane]].data()));
+    };
+    const auto floats = [](__m128i twice) { return _mm_cvtepi32_ps(_mm_srai_epi32(twice, 16)); };
+    const __m128i low = _mm_unpacklo_epi16(load(0), load(1)), high = _mm_unpacklo_epi16(load(2), load(3));
+    const __m128i xy = _mm_unpacklo_epi32(low, high), z = _mm_unpackhi_epi32(low, high);
+    _mm_storeu_ps(around.to_sensor_x_.data() + i, floats(_mm_unpacklo_epi16(xy, xy)));
+    _mm_storeu_ps(around.to_sensor_y_.data() + i, floats(_mm_unpackhi_epi16(xy, xy)));
+    _mm_storeu_ps(around.to_sensor_z_.data() + i, floats(_mm_unpacklo_epi16(z, z)));
+#else
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const PackedDirection& direction = to_sensor[n[lane]];
+      around.to_sensor_x_[i + lane] = direction[0];
+      around.to_sensor_y_[i + lane] = direction[1];
+      around.to_sensor_z_[i + lane] = direction[2];
+    }
+#endif
+  }
+  static void look_up_plain(Neighbourhood& around) {
+    look_up(around);
+  }
+
   static Some within_plain(const Neighbourhood& around, float distance2) {
     Some bits = 0;
     for (std::size_t i = 0; i < around.size_; ++i)
@@ -54,10 +103,10 @@ struct Neighbourhood::Kernels {
   /// a surface grows with the squared distance, a guess by proportion is soon right.
   template <class Within>
   [[gnu::always_inline]] static Some guess_nearest(const Neighbourhood& around, Some some, std::size_t most,
-                                                   float furthest2, Within within) {
+                                                   Within within) {
     constexpr int kGuesses = 12;
     const auto wanted = static_cast<float>(most);
-    float low = 0.0F, high = furthest2, low_count = 0.0F;
+    float low = 0.0F, high = static_cast<float>(around.furthest2_), low_count = 0.0F;
     auto high_count = static_cast<float>(std::popcount(some));
     Some result = some;
     for (int guess = 0; guess < kGuesses && high_count > wanted; ++guess) {
@@ -72,30 +121,35 @@ struct Neighbourhood::Kernels {
     return result;
   }
   static Some nearest_plain(const Neighbourhood& around, Some some, std::size_t most) {
-    const auto& rounded2 = around.rounded2_;
-    const float furthest2 =
-        *std::max_element(rounded2.begin(), rounded2.begin() + static_cast<std::ptrdiff_t>(around.size_));
-    return guess_nearest(around, some, most, furthest2, within_plain);
+    return guess_nearest(around, some, most, within_plain);
   }
 
   /// By their numbers, or the first ones.
-  [[gnu::always_inline]] static FourDoubles four(const Column<double>& column, const std::uint8_t* n) {
+  template <class Number>
+  [[gnu::always_inline]] static FourDoubles four(const double* column, const Number* n) {
     return FourDoubles{column[n[0]], column[n[1]], column[n[2]], column[n[3]]};
   }
-  [[gnu::always_inline]] static FourDoubles four(const Column<double>& column, std::size_t first) {
+  [[gnu::always_inline]] static FourDoubles four(const double* column, std::size_t first) {
     FourDoubles result;
-    std::memcpy(&result, column.data() + first, sizeof(result));
+    std::memcpy(&result, column + first, sizeof(result));
     return result;
+  }
+  template <class Four, class T>
+  [[gnu::always_inline]] static void put(Four values, Column<T>& column, std::size_t first) {
+    std::memcpy(column.data() + first, &values, sizeof(values));
+  }
+  [[gnu::always_inline]] static double greatest(FourDoubles of) {
+    return std::max(std::max(of[0], of[1]), std::max(of[2], of[3]));
   }
   template <class Numbers>
   [[gnu::always_inline]] static double furthest_of(const Neighbourhood& around, std::size_t count,
                                                    Numbers numbers) {
     FourDoubles most{};
     for (std::size_t i = 0; i < count; i += 4) {
-      const FourDoubles distance2 = four(around.distance2_, numbers(i));
+      const FourDoubles distance2 = four(around.distance2_.data(), numbers(i));
       most = distance2 > most ? distance2 : most;
     }
-    return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+    return greatest(most);
   }
   template <class Numbers>
   [[gnu::always_inline]] static void add_moments(const Neighbourhood& around, std::size_t count,
@@ -108,9 +162,9 @@ struct Neighbourhood::Kernels {
     const double scale = total.scale = std::ldexp(1.0, 22 - exponent);
     std::array<FourDoubles, 9> sums{};
     for (std::size_t i = 0; i < count; i += 4) {
-      const FourDoubles x = four(around.x_, numbers(i)) * scale + kRounds - kRounds;
-      const FourDoubles y = four(around.y_, numbers(i)) * scale + kRounds - kRounds;
-      const FourDoubles z = four(around.z_, numbers(i)) * scale + kRounds - kRounds;
+      const FourDoubles x = four(around.x_.data(), numbers(i)) * scale + kRounds - kRounds;
+      const FourDoubles y = four(around.y_.data(), numbers(i)) * scale + kRounds - kRounds;
+      const FourDoubles z = four(around.z_.data(), numbers(i)) * scale + kRounds - kRounds;
       sums[0] += x, sums[1] += y, sums[2] += z;
       sums[3] += x * x, sums[4] += x * y, sums[5] += x * z;
       sums[6] += y * y, sums[7] += y * z, sums[8] += z * z;
@@ -136,7 +190,7 @@ struct Neighbourhood::Kernels {
   }
 
 #ifdef __x86_64__
-  [[gnu::target("avx2")]] static Some within_avx2(const Neighbourhood& around, float distance2) {
+  RAY_AVX2 static Some within_avx2(const Neighbourhood& around, float distance2) {
     const __m256 most = _mm256_set1_ps(distance2);
     Some bits = 0;
     for (std::size_t i = 0; i < around.size_; i += kLanes) {
@@ -145,8 +199,8 @@ struct Neighbourhood::Kernels {
     }
     return bits;
   }
-  [[gnu::target("avx2")]] static Some seen_from_avx2(const Neighbourhood& around, const Eigen::Vector3d& side,
-                                                     double at_least) {
+  RAY_AVX2 static Some seen_from_avx2(const Neighbourhood& around, const Eigen::Vector3d& side,
+                                      double at_least) {
     const __m256d sx = _mm256_set1_pd(side.x()), sy = _mm256_set1_pd(side.y()), sz = _mm256_set1_pd(side.z()),
                   least = _mm256_set1_pd(at_least);
     Some bits = 0;
@@ -161,50 +215,54 @@ struct Neighbourhood::Kernels {
     }
     return bits & around.all();
   }
-  [[gnu::target("avx2")]] static Some nearest_avx2(const Neighbourhood& around, Some some, std::size_t most) {
-    __m256 furthest2 = _mm256_setzero_ps();
-    for (std::size_t i = 0; i < around.size_; i += kLanes)
-      furthest2 = _mm256_max_ps(furthest2, _mm256_load_ps(around.rounded2_.data() + i));
-    const __m128 of_four = _mm_max_ps(_mm256_castps256_ps128(furthest2), _mm256_extractf128_ps(furthest2, 1));
-    const __m128 of_two = _mm_max_ps(of_four, _mm_movehl_ps(of_four, of_four));
-    return guess_nearest(around, some, most, std::max(of_two[0], of_two[1]), within_avx2);
+  RAY_AVX2 static Some nearest_avx2(const Neighbourhood& around, Some some, std::size_t most) {
+    return guess_nearest(around, some, most, within_avx2);
   }
-  [[gnu::target("avx2")]] static void moments_avx2(const Neighbourhood& around, Some some, Moments& total) {
+  RAY_AVX2 static void moments_avx2(const Neighbourhood& around, Some some, Moments& total) {
     moments_of(around, some, total);
   }
-  static inline const bool kHasAvx2 = __builtin_cpu_supports("avx2") != 0;
+  RAY_AVX2 static void look_up_avx2(Neighbourhood& around) {
+    look_up(around);
+  }
+  static inline const bool kHasAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
+  static inline const auto look_up_fast = kHasAvx2 ? look_up_avx2 : look_up_plain;
   static inline const auto seen_from_fast = kHasAvx2 ? seen_from_avx2 : seen_from_plain;
   static inline const auto nearest_fast = kHasAvx2 ? nearest_avx2 : nearest_plain;
   static inline const auto moments_fast = kHasAvx2 ? moments_avx2 : moments_plain;
 #else
+  static constexpr auto look_up_fast = look_up_plain;
   static constexpr auto seen_from_fast = seen_from_plain;
   static constexpr auto nearest_fast = nearest_plain;
   static constexpr auto moments_fast = moments_plain;
 #endif
 };
 
-void Neighbourhood::fill(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
-  assert(neighbours.size() <= kMost);
+void Neighbourhood::start(const PointTree& tree, std::size_t place, std::size_t size) {
+  assert(size <= kMost);
   tree_ = &tree;
   place_ = place;
-  size_ = neighbours.size();
-  const Eigen::Vector3d middle = tree.point(place);
+  size_ = size;
+  const auto end = places_.begin() + static_cast<std::ptrdiff_t>(Kernels::whole_groups(size));
+  std::fill(places_.begin() + static_cast<std::ptrdiff_t>(size), end, static_cast<std::uint32_t>(place));
+}
+
+void Neighbourhood::fill(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours) {
+  start(tree, place, neighbours.size());
+  for (std::size_t i = 0; i < size_; ++i)
+    places_[i] = neighbours[i].place;
+  Kernels::look_up_fast(*this);
+  furthest2_ = 0.0;
   for (std::size_t i = 0; i < size_; ++i) {
-    const Neighbour& neighbour = neighbours[i];
-    places_[i] = neighbour.place;
-    distance2_[i] = neighbour.distance2;
-    rounded2_[i] = static_cast<float>(neighbour.distance2);
-    const Eigen::Vector3d offset = tree.point(neighbour.place) - middle;
-    x_[i] = offset.x(), y_[i] = offset.y(), z_[i] = offset.z();
-    const PackedDirection& to_sensor = tree.to_sensor(neighbour.place);
-    to_sensor_x_[i] = to_sensor[0], to_sensor_y_[i] = to_sensor[1], to_sensor_z_[i] = to_sensor[2];
+    distance2_[i] = neighbours[i].distance2;
+    rounded2_[i] = static_cast<float>(neighbours[i].distance2);
+    furthest2_ = std::max(furthest2_, neighbours[i].distance2);
   }
-  for (std::size_t i = size_; i < (size_ / kLanes + 1) * kLanes; ++i) {
-    distance2_[i] = 0.0;
-    rounded2_[i] = 0.0F;
-    x_[i] = y_[i] = z_[i] = 0.0;
-    to_sensor_x_[i] = to_sensor_y_[i] = to_sensor_z_[i] = 0.0F;
-  }
+}
+
+void Neighbourhood::fill(const PointTree& tree, std::size_t place, std::span<const std::uint32_t> places) {
+  start(tree, place, places.size());
+  std::copy(places.begin(), places.end(), places_.begin());
+  Kernels::look_up_fast(*this);
 }
 
 Neighbourhood::Some Neighbourhood::nearest(Some some, std::size_t most) const {
@@ -212,8 +270,8 @@ Neighbourhood::Some Neighbourhood::nearest(Some some, std::size_t most) const {
   if (count <= most) return some;
   if (most == 0) return 0;
   const Some guessed = Kernels::nearest_fast(*this, some, most);
+  if (static_cast<std::size_t>(std::popcount(guessed)) == most) return guessed;
   ChosenNeighbours which(guessed, size_);
-  if (which.count == most) return guessed;
   const auto begin = which.numbers.begin();
   std::nth_element(
       begin, begin + static_cast<std::ptrdiff_t>(most), begin + static_cast<std::ptrdiff_t>(which.count),
@@ -226,11 +284,6 @@ Neighbourhood::Some Neighbourhood::nearest(Some some, std::size_t most) const {
 
 Neighbourhood::Some Neighbourhood::seen_from(const Eigen::Vector3d& side, double at_least) const {
   return Kernels::seen_from_fast(*this, side, at_least);
-}
-
-double Neighbourhood::furthest2() const {
-  const auto end = distance2_.begin() + static_cast<std::ptrdiff_t>(size_);
-  return size_ == 0 ? 0.0 : *std::max_element(distance2_.begin(), end);
 }
 
 Neighbourhood::Moments Neighbourhood::moments(Some some) const {

@@ -89,7 +89,8 @@ class PointTree::Builder {
     const std::size_t count = points_.size();
     for (std::vector<double>* column : {&tree_.x_, &tree_.y_, &tree_.z_})
       *column = touched_vector<double>(context_, count + 7);  // leaves are read eight points at a time
-    tree_.to_sensor_ = touched_vector<PackedDirection>(context_, count);
+    tree_.to_sensor_ =
+        touched_vector<PackedDirection>(context_, count + 1);  // of which four numbers are read
     tree_.index_ = touched_vector<std::uint32_t>(context_, count);
     below_.resize(buckets_);
     nodes_.resize(2 * buckets_);

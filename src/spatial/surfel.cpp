@@ -113,7 +113,7 @@ class SurfelFinder::Impl {
 
   void search_nearest(Work& work, std::size_t place, std::size_t count) {
     work.asked = count;
-    work.around.fill(search_.tree(), place, search_.nearest(place, count, rule_.reach));
+    search_.nearest(place, count, rule_.reach, work.around);
     work.close = work.around.nearest(work.around.all(), rule_.neighbours);
   }
 
@@ -189,7 +189,7 @@ class SurfelFinder::Impl {
   }
 
   void search_side(std::size_t place, std::size_t count, const Eigen::Vector3d& side, Surfel& surfel) {
-    of_side_.fill(search_.tree(), place, search_.nearest_facing(place, count, rule_.reach, side));
+    search_.nearest_facing(place, count, rule_.reach, side, of_side_);
     queue_.add(of_side_, of_side_.all(), surfel);
   }
 

@@ -8,6 +8,8 @@
 
 namespace ray {
 
+class Neighbourhood;
+
 struct Neighbour {
   double distance2 = 0.0;  ///< m²
   std::uint32_t place = 0;
@@ -51,6 +53,11 @@ class NeighbourSearch {
   /// Only of the points that were seen from the side to which `normal` points: dot(normal, to_sensor) >= 0.
   std::span<const Neighbour> nearest_facing(std::size_t place, std::size_t count, double reach,
                                             const Eigen::Vector3d& normal);
+
+  /// The same, as a neighbourhood, which is faster than filling one with what is found.
+  void nearest(std::size_t place, std::size_t count, double reach, Neighbourhood& around);
+  void nearest_facing(std::size_t place, std::size_t count, double reach, const Eigen::Vector3d& normal,
+                      Neighbourhood& around);
 
   /// The places of these alone: a tenth faster, where there are fewer within reach than `count`.
   std::span<const std::uint32_t> places_facing(std::size_t place, std::size_t count, double reach,

@@ -21,6 +21,8 @@ class Neighbourhood {
 
   /// The point at `place`, and these. Precondition: at most kMost.
   void fill(const PointTree& tree, std::size_t place, std::span<const Neighbour> neighbours);
+  /// The same, for who knows the places alone. 0.1 µs.
+  void fill(const PointTree& tree, std::size_t place, std::span<const std::uint32_t> places);
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t place() const { return place_; }
@@ -33,7 +35,7 @@ class Neighbourhood {
   /// were seen from there, as is_seen_from has it. 10 ns.
   [[nodiscard]] Some seen_from(const Eigen::Vector3d& side, double at_least = 0.0) const;
   /// The squared distance of the furthest, m²; 0 if there are none.
-  [[nodiscard]] double furthest2() const;
+  [[nodiscard]] double furthest2() const { return furthest2_; }
 
   /// How some lie around the point: offsets from it as whole numbers of `1 / scale`, at most 2^22 of them. So
   /// sums of their products are exact, and do not depend on the order of the neighbours.
@@ -48,14 +50,18 @@ class Neighbourhood {
  private:
   struct Kernels;
 
+  void start(const PointTree& tree, std::size_t place, std::size_t size);
+
   static constexpr std::size_t kLanes = 8;
-  /// Behind the last neighbour there is at least one that is not there, to whole groups of lanes.
+  /// Behind the last neighbour there is at least one that is not there, to whole groups of lanes: the point
+  /// itself, as it were.
   template <class T>
   using Column = std::array<T, kMost + kLanes>;
 
   const PointTree* tree_ = nullptr;
   std::size_t place_ = 0;
   std::size_t size_ = 0;
+  double furthest2_ = 0.0;
   alignas(32) Column<double> distance2_;  ///< m²; 0 where there is nothing
   alignas(32) Column<float> rounded2_;    ///< of these
   alignas(32) Column<double> x_, y_, z_;  ///< m, from the point; 0 where there is nothing

@@ -36,6 +36,7 @@ class PointTree {
  private:
   friend class TreeWalk;
   friend class LeafSurroundings;
+  friend class Neighbourhood;
   friend class NearestPoint;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -248,6 +248,48 @@ RC_GTEST_PROP(Neighbourhood, ChoosesAsSortingDoes, (std::uint64_t seed)) {
               (i < neighbours.size() && is_seen_from(side, tree.to_sensor(neighbours[i].place)) ? 1U : 0U));
 }
 
+/// By places alone: what the tree says of them.
+RC_GTEST_PROP(Neighbourhood, LooksUpPlaces, (std::uint64_t seed)) {
+  const std::vector<SeenPoint> points = many_kinds(seed, 500);
+  const PointTree tree({}, points);
+  const RandomStream random(seed, "places");
+  std::vector<std::uint32_t> places(*rc::gen::inRange<std::size_t>(0, NeighbourSearch::kMost + 1));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = static_cast<std::uint32_t>(random.uniform(i) * 500.0);
+  const auto place = *rc::gen::inRange<std::size_t>(0, 500);
+  Neighbourhood around, from_neighbours;
+  around.fill(tree, place, places);
+  std::vector<Neighbour> neighbours;
+  double furthest2 = 0.0;
+  for (const std::uint32_t other : places) {
+    const Eigen::Vector3d offset = tree.point(other) - tree.point(place);
+    neighbours.push_back(
+        {offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z(), other});
+    furthest2 = std::max(furthest2, neighbours.back().distance2);
+  }
+  from_neighbours.fill(tree, place, neighbours);
+  RC_ASSERT(around.size() == places.size() && around.place() == place);
+  RC_ASSERT(around.furthest2() == furthest2 && from_neighbours.furthest2() == furthest2);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    RC_ASSERT(around.neighbour(i).place == places[i]);
+    RC_ASSERT(around.neighbour(i).distance2 == neighbours[i].distance2);
+  }
+  const Eigen::Vector3d side(random.uniform(100) - 0.5, random.uniform(101) - 0.5, random.uniform(102) - 0.5);
+  Neighbourhood::Some facing = 0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    facing |= Neighbourhood::Some{is_seen_from(side, tree.to_sensor(places[i]))} << i;
+  RC_ASSERT(around.seen_from(side) == facing);
+  const Neighbourhood::Moments moments = around.moments(around.all());
+  RC_ASSERT(moments.sum == from_neighbours.moments(around.all()).sum);
+  std::array<double, 3> sum{};
+  for (const std::uint32_t other : places)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      sum[axis] += std::nearbyint((tree.point(other)[a] - tree.point(place)[a]) * moments.scale);
+    }
+  RC_ASSERT(moments.sum == sum);
+}
+
 /// Both sides of a wall, `thickness` apart, each seen from its own side.
 std::vector<SeenPoint> wall(double thickness, double noise, std::size_t count) {
   const RandomStream random(3, "wall");
