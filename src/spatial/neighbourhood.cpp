@@ -1,3 +1,5 @@
+#include "lanes.h"
+
 #include <raycloud/spatial/neighbourhood.h>
 
 #include <algorithm>
@@ -6,9 +8,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#ifdef __x86_64__
+#ifdef RAY_HAS_LANES
 #include <immintrin.h>
-#define RAY_AVX2 [[gnu::target("avx2,popcnt")]]
 #endif
 
 namespace ray {
@@ -17,6 +18,9 @@ namespace {
 /// Four at once where the processor can, else two and two.
 using FourDoubles [[gnu::vector_size(32)]] = double;
 using FourFloats [[gnu::vector_size(16)]] = float;
+#ifdef RAY_HAS_LANES
+using EightDoubles [[gnu::vector_size(64)]] = double;
+#endif
 
 /// Numbers of those in a set, and how many; then up to three times the number of one that is not there.
 struct ChosenNeighbours {
@@ -33,7 +37,7 @@ struct ChosenNeighbours {
 
 }  // namespace
 
-/// The inner loops, for processors with and without AVX2.
+/// The inner loops, for processors with and without AVX2, and with AVX-512.
 struct Neighbourhood::Kernels {
   /// Of lanes, with at least one that is nobody's.
   static std::size_t whole_groups(std::size_t size) { return (size / kLanes + 1) * kLanes; }
@@ -141,6 +145,18 @@ struct Neighbourhood::Kernels {
   [[gnu::always_inline]] static double greatest(FourDoubles of) {
     return std::max(std::max(of[0], of[1]), std::max(of[2], of[3]));
   }
+  static constexpr double kRounds = 0x1.8p52;  // what is added to it becomes a whole number
+  /// 2^22 of a power of two above the distance.
+  static double scale_of(double furthest2) {
+    int exponent = 0;
+    const auto bits = std::bit_cast<std::uint64_t>(furthest2) >> 52;
+    if (bits == 0 || bits == 0x7ff) {  // no normal number
+      static_cast<void>(std::frexp(std::sqrt(furthest2), &exponent));
+      return std::ldexp(1.0, 22 - exponent);
+    }
+    exponent = (static_cast<int>(bits) - 1021) >> 1;  // half that of the square, rounded up
+    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + 22 - exponent) << 52);
+  }
   template <class Numbers>
   [[gnu::always_inline]] static double furthest_of(const Neighbourhood& around, std::size_t count,
                                                    Numbers numbers) {
@@ -154,12 +170,9 @@ struct Neighbourhood::Kernels {
   template <class Numbers>
   [[gnu::always_inline]] static void add_moments(const Neighbourhood& around, std::size_t count,
                                                  Numbers numbers, Moments& total) {
-    constexpr double kRounds = 0x1.8p52;
     total.furthest2 = furthest_of(around, count, numbers);
     if (!(total.furthest2 > 0.0)) return;
-    int exponent = 0;
-    static_cast<void>(std::frexp(std::sqrt(total.furthest2), &exponent));
-    const double scale = total.scale = std::ldexp(1.0, 22 - exponent);
+    const double scale = total.scale = scale_of(total.furthest2);
     std::array<FourDoubles, 9> sums{};
     for (std::size_t i = 0; i < count; i += 4) {
       const FourDoubles x = four(around.x_.data(), numbers(i)) * scale + kRounds - kRounds;
@@ -189,7 +202,7 @@ struct Neighbourhood::Kernels {
     moments_of(around, some, total);
   }
 
-#ifdef __x86_64__
+#ifdef RAY_HAS_LANES
   RAY_AVX2 static Some within_avx2(const Neighbourhood& around, float distance2) {
     const __m256 most = _mm256_set1_ps(distance2);
     Some bits = 0;
@@ -224,17 +237,89 @@ struct Neighbourhood::Kernels {
   RAY_AVX2 static void look_up_avx2(Neighbourhood& around) {
     look_up(around);
   }
-  static inline const bool kHasAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
-  static inline const auto look_up_fast = kHasAvx2 ? look_up_avx2 : look_up_plain;
-  static inline const auto seen_from_fast = kHasAvx2 ? seen_from_avx2 : seen_from_plain;
-  static inline const auto nearest_fast = kHasAvx2 ? nearest_avx2 : nearest_plain;
-  static inline const auto moments_fast = kHasAvx2 ? moments_avx2 : moments_plain;
-#else
-  static constexpr auto look_up_fast = look_up_plain;
-  static constexpr auto seen_from_fast = seen_from_plain;
-  static constexpr auto nearest_fast = nearest_plain;
-  static constexpr auto moments_fast = moments_plain;
+
+  /// The numbers of those of a set that are among eight; or of all of these.
+  RAY_AVX512 static EightDoubles eight(const Column<double>& column, std::size_t i, Some some) {
+    return _mm512_maskz_loadu_pd(static_cast<__mmask8>(some >> i), column.data() + i);
+  }
+  RAY_AVX512 static __m512d eight(const Column<float>& column, std::size_t i) {
+    return _mm512_cvtps_pd(_mm256_load_ps(column.data() + i));
+  }
+  RAY_AVX512 static Some seen_from_avx512(const Neighbourhood& around, const Eigen::Vector3d& side,
+                                          double at_least) {
+    const __m512d sx = _mm512_set1_pd(side.x()), sy = _mm512_set1_pd(side.y()), sz = _mm512_set1_pd(side.z()),
+                  least = _mm512_set1_pd(at_least);
+    Some bits = 0;
+    for (std::size_t i = 0; i < around.size_; i += 8) {
+      const __m512d x = eight(around.to_sensor_x_, i), y = eight(around.to_sensor_y_, i),
+                    z = eight(around.to_sensor_z_, i);
+      const __m512d product =
+          _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(sx, x), _mm512_mul_pd(sy, y)), _mm512_mul_pd(sz, z));
+      bits |= Some{_mm512_cmp_pd_mask(product, least, _CMP_GE_OQ)} << i;
+    }
+    return bits & around.all();
+  }
+  RAY_AVX512 static EightDoubles rounded(EightDoubles value, double scale) {
+    return value * scale + kRounds - kRounds;
+  }
+  RAY_AVX512 static double sum_of(EightDoubles v) {
+    return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+  }
+  RAY_AVX512 static double greatest_avx512(EightDoubles v) {
+    const FourDoubles low{v[0], v[1], v[2], v[3]}, high{v[4], v[5], v[6], v[7]};
+    return greatest(low > high ? low : high);
+  }
+  RAY_AVX512 static void moments_avx512(const Neighbourhood& around, Some some, Moments& total) {
+    EightDoubles furthest2{};
+    for (std::size_t i = 0; i < around.size_; i += 8) {
+      const EightDoubles distance2 = eight(around.distance2_, i, some);
+      furthest2 = distance2 > furthest2 ? distance2 : furthest2;
+    }
+    total.furthest2 = greatest_avx512(furthest2);
+    if (!(total.furthest2 > 0.0)) return;
+    const double scale = total.scale = scale_of(total.furthest2);
+    std::array<EightDoubles, 9> sums{};
+    for (std::size_t i = 0; i < around.size_; i += 8) {
+      const EightDoubles x = rounded(eight(around.x_, i, some), scale),
+                         y = rounded(eight(around.y_, i, some), scale),
+                         z = rounded(eight(around.z_, i, some), scale);
+      sums[0] += x, sums[1] += y, sums[2] += z;
+      sums[3] += x * x, sums[4] += x * y, sums[5] += x * z;
+      sums[6] += y * y, sums[7] += y * z, sums[8] += z * z;
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      total.sum[i] = sum_of(sums[i]);
+    for (std::size_t i = 0; i < 6; ++i)
+      total.products[i] = sum_of(sums[3 + i]);
+  }
 #endif
+
+  static void look_up_fast(Neighbourhood& around) {
+#ifdef RAY_HAS_LANES
+    if (lanes_in_use != Lanes::kPlain) return look_up_avx2(around);
+#endif
+    look_up_plain(around);
+  }
+  static Some seen_from_fast(const Neighbourhood& around, const Eigen::Vector3d& side, double at_least) {
+#ifdef RAY_HAS_LANES
+    if (lanes_in_use == Lanes::kAvx512) return seen_from_avx512(around, side, at_least);
+    if (lanes_in_use == Lanes::kAvx2) return seen_from_avx2(around, side, at_least);
+#endif
+    return seen_from_plain(around, side, at_least);
+  }
+  static Some nearest_fast(const Neighbourhood& around, Some some, std::size_t most) {
+#ifdef RAY_HAS_LANES
+    if (lanes_in_use != Lanes::kPlain) return nearest_avx2(around, some, most);
+#endif
+    return nearest_plain(around, some, most);
+  }
+  static void moments_fast(const Neighbourhood& around, Some some, Moments& total) {
+#ifdef RAY_HAS_LANES
+    if (lanes_in_use == Lanes::kAvx512) return moments_avx512(around, some, total);
+    if (lanes_in_use == Lanes::kAvx2) return moments_avx2(around, some, total);
+#endif
+    moments_plain(around, some, total);
+  }
 };
 
 void Neighbourhood::start(const PointTree& tree, std::size_t place, std::size_t size) {

@@ -8,7 +8,7 @@
 
 namespace ray {
 
-inline constexpr std::size_t kSieveLanes = 8;
+inline constexpr std::size_t kSieveLanes = 16;
 inline constexpr std::size_t kSieveRoom = 1024;
 /// Loops go by whole groups of lanes, so what they read and write may lie behind the last point.
 template <class T>
@@ -17,9 +17,9 @@ using SieveColumn = std::array<T, kSieveRoom + kSieveLanes>;
 /// Points in single precision. Behind the last one there are points at infinity, if `pad` was called.
 struct SievePoints {
   std::size_t size = 0;
-  alignas(32) SieveColumn<float> x{}, y{}, z{};
-  alignas(32) SieveColumn<std::uint32_t> place{};
-  alignas(32) SieveColumn<float> to_sensor_x{}, to_sensor_y{}, to_sensor_z{};
+  alignas(64) SieveColumn<float> x{}, y{}, z{};
+  alignas(64) SieveColumn<std::uint32_t> place{};
+  alignas(64) SieveColumn<float> to_sensor_x{}, to_sensor_y{}, to_sensor_z{};
 
   void pad() {
     for (std::size_t i = 0; i < kSieveLanes; ++i)
@@ -30,8 +30,8 @@ struct SievePoints {
 /// Those that are near; behind the last one the distance is infinite.
 struct SievedPoints {
   std::size_t size = 0;
-  alignas(32) SieveColumn<float> distance2{};  ///< squared
-  alignas(32) SieveColumn<std::uint32_t> place{};
+  alignas(64) SieveColumn<float> distance2{};  ///< squared
+  alignas(64) SieveColumn<std::uint32_t> place{};
 };
 
 /// A box in double, and how near to it.
@@ -67,7 +67,7 @@ struct SieveBody {
 };
 
 /// Appends the points of the source near the box, relative to its middle, to the others. Reads up to 7 more
-/// points. Precondition: there is room for all of the source and seven more.
+/// points. Precondition: there is room for all of the source and as many as there are lanes.
 void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& points);
 /// The points within the sphere, and of its side; true if for some the side is in doubt.
 [[nodiscard]] bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near);

@@ -1,11 +1,12 @@
 // The loops of point_sieve.h eight points at a time, where the processor can. The same operations in the same
 // order, so the same bits.
 
+#include "lanes.h"
 #include "point_sieve.h"
+#include "point_sieve_avx512.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef RAY_HAS_LANES
 #include <immintrin.h>
-#define RAY_AVX2 [[gnu::target("avx2,popcnt")]]
 
 namespace ray {
 namespace avx2 {
@@ -187,32 +188,36 @@ RAY_AVX2 float sieve_least_sum(const SievePoints& points, const std::array<float
   return _mm_cvtss_f32(_mm_min_ss(four, _mm_shuffle_ps(four, four, 1)));
 }
 
-const bool kIsHere = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
-
 }  // namespace
 }  // namespace avx2
 
 void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& points) {
-  avx2::kIsHere ? avx2::sieve_box(source, box, points) : plain::sieve_box(source, box, points);
+  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_box(source, box, points);
+  lanes_in_use == Lanes::kAvx2 ? avx2::sieve_box(source, box, points) : plain::sieve_box(source, box, points);
 }
 bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near) {
-  if (!avx2::kIsHere) return plain::sieve_sphere(points, sphere, near);
+  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_sphere(points, sphere, near);
+  if (lanes_in_use == Lanes::kPlain) return plain::sieve_sphere(points, sphere, near);
   return sphere.has_side ? avx2::sieve_sphere<true>(points, sphere, near)
                          : avx2::sieve_sphere<false>(points, sphere, near);
 }
 void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
-  avx2::kIsHere ? avx2::sieve_body(points, body, near) : plain::sieve_body(points, body, near);
+  lanes_in_use == Lanes::kPlain ? plain::sieve_body(points, body, near)
+                                : avx2::sieve_body(points, body, near);
 }
 std::size_t sieve_count(const SievedPoints& near, float distance2) {
-  return avx2::kIsHere ? avx2::sieve_count(near, distance2) : plain::sieve_count(near, distance2);
+  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_count(near, distance2);
+  return lanes_in_use == Lanes::kAvx2 ? avx2::sieve_count(near, distance2)
+                                      : plain::sieve_count(near, distance2);
 }
 void sieve_further(SievedPoints& near, float distance2) {
-  avx2::kIsHere ? avx2::sieve_further(near, distance2) : plain::sieve_further(near, distance2);
+  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_further(near, distance2);
+  lanes_in_use == Lanes::kAvx2 ? avx2::sieve_further(near, distance2) : plain::sieve_further(near, distance2);
 }
 float sieve_least_sum(const SievePoints& points, const std::array<float, 3>& middle, const float* values,
                       std::size_t count) {
-  return avx2::kIsHere ? avx2::sieve_least_sum(points, middle, values, count)
-                       : plain::sieve_least_sum(points, middle, values, count);
+  return lanes_in_use == Lanes::kPlain ? plain::sieve_least_sum(points, middle, values, count)
+                                       : avx2::sieve_least_sum(points, middle, values, count);
 }
 
 }  // namespace ray

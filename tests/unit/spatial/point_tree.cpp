@@ -1,3 +1,5 @@
+#include "support/any_lanes.h"
+
 #include <raycloud/exec/parallel.h>
 #include <raycloud/exec/random.h>
 #include <raycloud/spatial/neighbour_search.h>
@@ -69,6 +71,7 @@ Found sorted(const PointTree& tree, std::span<const Neighbour> neighbours) {
 
 /// Around points of the tree or anywhere, as wide as a leaf or as all, and flat.
 RC_GTEST_PROP(PointTree, InsideABodyAreThoseOfBruteForce, (std::uint64_t seed)) {
+  const AnyLanes lanes;
   const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
   const auto count = *rc::gen::inRange<std::size_t>(1, 600);
   const Eigen::Vector3d origin =
@@ -103,6 +106,7 @@ RC_GTEST_PROP(PointTree, InsideABodyAreThoseOfBruteForce, (std::uint64_t seed)) 
 }
 
 RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForce, ()) {
+  const AnyLanes lanes;
   const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
   const auto count = *rc::gen::inRange<std::size_t>(1, 400);
   const auto wanted = *rc::gen::inRange<std::size_t>(0, 40);
@@ -134,6 +138,7 @@ RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForce, ()) {
 
 /// Whatever was asked for before, of the same place or of others.
 RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForceInAnyOrderOfAsking, ()) {
+  const AnyLanes lanes;
   const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
   const std::vector<SeenPoint> points = arranged(arrangement, 300, *rc::gen::arbitrary<std::uint64_t>());
   const RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), "asking");

@@ -1,3 +1,5 @@
+#include "support/any_lanes.h"
+
 #include <raycloud/exec/random.h>
 #include <raycloud/spatial/surfel.h>
 #include <raycloud/spatial/symmetric_eigen.h>
@@ -185,6 +187,7 @@ Indices nearest_of(const PointTree& tree, const Neighbourhood& around, std::size
 }
 
 RC_GTEST_PROP(Surfel, SameBitsAsByBruteForce, (std::uint64_t seed)) {
+  const AnyLanes lanes;
   const auto count = *rc::gen::inRange<std::size_t>(1, 400);
   const std::vector<SeenPoint> points = many_kinds(seed, count);
   SurfelRule rule;
@@ -213,6 +216,7 @@ RC_GTEST_PROP(Surfel, SameBitsAsByBruteForce, (std::uint64_t seed)) {
 
 /// The nearest of some, ties by index, against sorting; sides against is_seen_from.
 RC_GTEST_PROP(Neighbourhood, ChoosesAsSortingDoes, (std::uint64_t seed)) {
+  const AnyLanes lanes;
   std::vector<SeenPoint> points = many_kinds(seed, 500);
   const double step = *rc::gen::element(0.0, 0.05, 0.5);  // many are as far as others
   for (SeenPoint& point : points)
@@ -250,6 +254,7 @@ RC_GTEST_PROP(Neighbourhood, ChoosesAsSortingDoes, (std::uint64_t seed)) {
 
 /// By places alone: what the tree says of them.
 RC_GTEST_PROP(Neighbourhood, LooksUpPlaces, (std::uint64_t seed)) {
+  const AnyLanes lanes;
   const std::vector<SeenPoint> points = many_kinds(seed, 500);
   const PointTree tree({}, points);
   const RandomStream random(seed, "places");
@@ -288,6 +293,23 @@ RC_GTEST_PROP(Neighbourhood, LooksUpPlaces, (std::uint64_t seed)) {
       sum[axis] += std::nearbyint((tree.point(other)[a] - tree.point(place)[a]) * moments.scale);
     }
   RC_ASSERT(moments.sum == sum);
+}
+
+/// A power of two above the furthest, by the library.
+RC_GTEST_PROP(Neighbourhood, ScalesByPowersOfTwo, ()) {
+  const AnyLanes lanes;
+  const auto exponent = *rc::gen::inRange(-535, 511);
+  const double away =
+      std::ldexp(*rc::gen::element(1.0, 1.5, std::sqrt(2.0), std::nextafter(1.0, 0.0),
+                                   std::nextafter(std::sqrt(2.0), 1.0), std::nextafter(1.0, 2.0)),
+                 exponent);
+  const PointTree tree({}, std::vector<SeenPoint>{{}, {{away, 0.0, 0.0}, {}}});
+  Neighbourhood around;
+  const std::uint32_t other = 1;
+  around.fill(tree, 0, {&other, 1});
+  int expected = 0;
+  static_cast<void>(std::frexp(std::sqrt(away * away), &expected));
+  RC_ASSERT(around.moments(around.all()).scale == std::ldexp(1.0, 22 - expected));
 }
 
 /// Both sides of a wall, `thickness` apart, each seen from its own side.
