@@ -22,6 +22,18 @@ using FourFloats [[gnu::vector_size(16)]] = float;
 using EightDoubles [[gnu::vector_size(64)]] = double;
 #endif
 
+/// Sums by lanes: in names of their own, so that they stay in registers.
+template <class Lanes>
+struct MomentSums {
+  Lanes x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+
+  [[gnu::always_inline]] void add(Lanes at_x, Lanes at_y, Lanes at_z) {
+    x += at_x, y += at_y, z += at_z;
+    xx += at_x * at_x, xy += at_x * at_y, xz += at_x * at_z;
+    yy += at_y * at_y, yz += at_y * at_z, zz += at_z * at_z;
+  }
+};
+
 /// Numbers of those in a set, and how many; then up to three times the number of one that is not there.
 struct ChosenNeighbours {
   std::array<std::uint8_t, Neighbourhood::kMost + 4> numbers;
@@ -173,20 +185,35 @@ struct Neighbourhood::Kernels {
     total.furthest2 = furthest_of(around, count, numbers);
     if (!(total.furthest2 > 0.0)) return;
     const double scale = total.scale = scale_of(total.furthest2);
-    std::array<FourDoubles, 9> sums{};
+    MomentSums<FourDoubles> sums;
     for (std::size_t i = 0; i < count; i += 4) {
       const FourDoubles x = four(around.x_.data(), numbers(i)) * scale + kRounds - kRounds;
       const FourDoubles y = four(around.y_.data(), numbers(i)) * scale + kRounds - kRounds;
       const FourDoubles z = four(around.z_.data(), numbers(i)) * scale + kRounds - kRounds;
-      sums[0] += x, sums[1] += y, sums[2] += z;
-      sums[3] += x * x, sums[4] += x * y, sums[5] += x * z;
-      sums[6] += y * y, sums[7] += y * z, sums[8] += z * z;
+      sums.add(x, y, z);
     }
-    const auto sum_of = [&](std::size_t i) { return sums[i][0] + sums[i][1] + sums[i][2] + sums[i][3]; };
-    for (std::size_t i = 0; i < 3; ++i)
-      total.sum[i] = sum_of(i);
-    for (std::size_t i = 0; i < 6; ++i)
-      total.products[i] = sum_of(3 + i);
+    put(sums, total);
+  }
+#ifdef RAY_HAS_LANES
+  /// Of both halves.
+  [[gnu::always_inline]] static FourDoubles low(EightDoubles v) {
+    return FourDoubles{v[0], v[1], v[2], v[3]};
+  }
+  [[gnu::always_inline]] static FourDoubles high(EightDoubles v) {
+    return FourDoubles{v[4], v[5], v[6], v[7]};
+  }
+  [[gnu::always_inline]] static double sum_of(EightDoubles v) {
+    return sum_of(low(v) + high(v));
+  }
+#endif
+  [[gnu::always_inline]] static double sum_of(FourDoubles v) {
+    return (v[0] + v[1]) + (v[2] + v[3]);
+  }
+  template <class Lanes>
+  [[gnu::always_inline]] static void put(const MomentSums<Lanes>& sums, Moments& total) {
+    total.sum = {sum_of(sums.x), sum_of(sums.y), sum_of(sums.z)};
+    total.products = {sum_of(sums.xx), sum_of(sums.xy), sum_of(sums.xz),
+                      sum_of(sums.yy), sum_of(sums.yz), sum_of(sums.zz)};
   }
   [[gnu::always_inline]] static void moments_of(const Neighbourhood& around, Some some, Moments& total) {
     if (some == around.all()) {
@@ -262,35 +289,23 @@ struct Neighbourhood::Kernels {
   RAY_AVX512 static EightDoubles rounded(EightDoubles value, double scale) {
     return value * scale + kRounds - kRounds;
   }
-  RAY_AVX512 static double sum_of(EightDoubles v) {
-    return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
-  }
-  RAY_AVX512 static double greatest_avx512(EightDoubles v) {
-    const FourDoubles low{v[0], v[1], v[2], v[3]}, high{v[4], v[5], v[6], v[7]};
-    return greatest(low > high ? low : high);
-  }
   RAY_AVX512 static void moments_avx512(const Neighbourhood& around, Some some, Moments& total) {
     EightDoubles furthest2{};
     for (std::size_t i = 0; i < around.size_; i += 8) {
       const EightDoubles distance2 = eight(around.distance2_, i, some);
       furthest2 = distance2 > furthest2 ? distance2 : furthest2;
     }
-    total.furthest2 = greatest_avx512(furthest2);
+    total.furthest2 = std::max(greatest(low(furthest2)), greatest(high(furthest2)));
     if (!(total.furthest2 > 0.0)) return;
     const double scale = total.scale = scale_of(total.furthest2);
-    std::array<EightDoubles, 9> sums{};
+    MomentSums<EightDoubles> sums;
     for (std::size_t i = 0; i < around.size_; i += 8) {
       const EightDoubles x = rounded(eight(around.x_, i, some), scale),
                          y = rounded(eight(around.y_, i, some), scale),
                          z = rounded(eight(around.z_, i, some), scale);
-      sums[0] += x, sums[1] += y, sums[2] += z;
-      sums[3] += x * x, sums[4] += x * y, sums[5] += x * z;
-      sums[6] += y * y, sums[7] += y * z, sums[8] += z * z;
+      sums.add(x, y, z);
     }
-    for (std::size_t i = 0; i < 3; ++i)
-      total.sum[i] = sum_of(sums[i]);
-    for (std::size_t i = 0; i < 6; ++i)
-      total.products[i] = sum_of(sums[3 + i]);
+    put(sums, total);
   }
 #endif
 

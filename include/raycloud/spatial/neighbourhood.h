@@ -62,10 +62,10 @@ class Neighbourhood {
   std::size_t place_ = 0;
   std::size_t size_ = 0;
   double furthest2_ = 0.0;
-  alignas(32) Column<double> distance2_;  ///< m²; 0 where there is nothing
-  alignas(32) Column<float> rounded2_;    ///< of these
-  alignas(32) Column<double> x_, y_, z_;  ///< m, from the point; 0 where there is nothing
-  alignas(32) Column<float> to_sensor_x_, to_sensor_y_, to_sensor_z_;
+  alignas(64) Column<double> distance2_;  ///< m²; 0 where there is nothing
+  alignas(64) Column<float> rounded2_;    ///< of these
+  alignas(64) Column<double> x_, y_, z_;  ///< m, from the point; 0 where there is nothing
+  alignas(64) Column<float> to_sensor_x_, to_sensor_y_, to_sensor_z_;
   Column<std::uint32_t> places_;
 };
 
