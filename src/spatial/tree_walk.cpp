@@ -1,11 +1,14 @@
 #include "tree_walk.h"
 
+#include "lanes.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #ifdef __SSE2__
-#include <emmintrin.h>
+#include <immintrin.h>
 #endif
 
 namespace ray {
@@ -61,8 +64,66 @@ inline std::array<double, 2> TreeWalk::distances(const PointTree::Pair& pair) co
   return result;
 }
 
+#ifdef RAY_HAS_LANES
+/// The inner loops by eight points, where the processor can.
+struct TreeWalk::Avx512 {
+  /// Of eight, those that are there.
+  static __mmask8 first(std::size_t count) {
+    return static_cast<__mmask8>(count < kLanes ? (1U << count) - 1 : 0xffU);
+  }
+  RAY_AVX512 static void append(TreeWalk& walk, __mmask8 some, __m512d distance2, __m512i places) {
+    _mm512_storeu_pd(&walk.distance2_[walk.count_], _mm512_maskz_compress_pd(some, distance2));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(&walk.place_[walk.count_]),
+                        _mm512_castsi512_si256(_mm512_maskz_compress_epi32(some, places)));
+    walk.count_ += static_cast<std::size_t>(_mm_popcnt_u32(some));
+  }
+  RAY_AVX512 static void add_near(TreeWalk& walk, const Leaf& leaf) {
+    const PointTree& tree = walk.tree_;
+    const __m512d at_x = _mm512_set1_pd(walk.at_[0]), at_y = _mm512_set1_pd(walk.at_[1]),
+                  at_z = _mm512_set1_pd(walk.at_[2]), bound = _mm512_set1_pd(walk.bound_);
+    const __m512i self = _mm512_set1_epi32(static_cast<int>(walk.self_));
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 0, 0, 0, 0, 0, 0, 0, 0);
+    for (std::uint32_t i = 0; i < leaf.count; i += kLanes) {
+      const std::size_t at = leaf.first + i;
+      const __mmask8 some = first(leaf.count - i);
+      const __m512d dx = _mm512_sub_pd(_mm512_maskz_loadu_pd(some, tree.x_.data() + at), at_x),
+                    dy = _mm512_sub_pd(_mm512_maskz_loadu_pd(some, tree.y_.data() + at), at_y),
+                    dz = _mm512_sub_pd(_mm512_maskz_loadu_pd(some, tree.z_.data() + at), at_z);
+      const __m512d distance2 =
+          _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
+      const __m512i places = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(at)), lane);
+      const auto others = static_cast<__mmask8>(_mm512_cmpneq_epi32_mask(places, self) & some);
+      append(walk, _mm512_mask_cmp_pd_mask(others, distance2, bound, _CMP_LE_OQ), distance2, places);
+    }
+  }
+  RAY_AVX512 static std::size_t count_within(const TreeWalk& walk, double distance2) {
+    const __m512d most = _mm512_set1_pd(distance2);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < walk.count_; i += kLanes) {
+      const __m512d d = _mm512_loadu_pd(&walk.distance2_[i]);
+      count += static_cast<std::size_t>(
+          _mm_popcnt_u32(_mm512_mask_cmp_pd_mask(first(walk.count_ - i), d, most, _CMP_LE_OQ)));
+    }
+    return count;
+  }
+  RAY_AVX512 static void drop_further(TreeWalk& walk, double distance2) {
+    const __m512d most = _mm512_set1_pd(distance2);
+    const std::size_t count = std::exchange(walk.count_, 0);
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      const __m512d d = _mm512_loadu_pd(&walk.distance2_[i]);
+      const __m256i places = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(&walk.place_[i]));
+      append(walk, _mm512_mask_cmp_pd_mask(first(count - i), d, most, _CMP_LE_OQ), d,
+             _mm512_castsi256_si512(places));
+    }
+  }
+};
+#endif
+
 /// How many of the points found are no further than that.
 inline std::size_t TreeWalk::count_within(double distance2) {
+#ifdef RAY_HAS_LANES
+  if (lanes_in_use == Lanes::kAvx512) return Avx512::count_within(*this, distance2);
+#endif
 #ifdef __SSE2__
   distance2_[count_] = PointTree::kInfinity;
   __m128i sum = _mm_setzero_si128();
@@ -107,20 +168,48 @@ inline std::uint32_t TreeWalk::near_points(const Leaf& leaf, double* distance2) 
   return near;
 }
 
-/// Adds the points of a leaf that may be among the nearest, in no order.
-inline void TreeWalk::scan(const Leaf& leaf, const Eigen::Vector3d* side) {
+/// Adds the points of a leaf that are no further than the bound.
+inline void TreeWalk::add_near(const Leaf& leaf) {
+#ifdef RAY_HAS_LANES
+  if (lanes_in_use == Lanes::kAvx512) return Avx512::add_near(*this, leaf);
+#endif
   alignas(16) std::array<double, PointTree::kLeafPoints> distance2;
   std::uint32_t near = near_points(leaf, distance2.data());
   if (self_ - leaf.first < leaf.count) near &= ~(std::uint32_t{1} << (self_ - leaf.first));
-  std::size_t count = count_;
   for (; near != 0; near &= near - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
-    distance2_[count] = distance2[i];
-    place_[count] = leaf.first + i;
-    count += is_of_side(side, tree_.to_sensor_[leaf.first + i]) ? 1 : 0;
+    distance2_[count_] = distance2[i];
+    place_[count_++] = leaf.first + i;
   }
-  count_ = count;
-  if (count > kRoom - PointTree::kLeafPoints) keep_nearest();
+}
+
+/// Adds the points of a leaf that may be among the nearest, in no order.
+inline void TreeWalk::scan(const Leaf& leaf, const Eigen::Vector3d* side) {
+  std::size_t count = count_;
+  add_near(leaf);
+  if (side != nullptr) {
+    for (std::size_t i = count; i < count_; ++i) {
+      distance2_[count] = distance2_[i];
+      place_[count] = place_[i];
+      count += is_of_side(side, tree_.to_sensor_[place_[i]]) ? 1 : 0;
+    }
+    count_ = count;
+  }
+  if (count_ > kRoom - PointTree::kLeafPoints) keep_nearest();
+}
+
+inline void TreeWalk::drop_further(double distance2) {
+#ifdef RAY_HAS_LANES
+  if (lanes_in_use == Lanes::kAvx512) return Avx512::drop_further(*this, distance2);
+#endif
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double d = distance2_[i];
+    distance2_[kept] = d;
+    place_[kept] = place_[i];
+    kept += d <= distance2 ? 1 : 0;
+  }
+  count_ = kept;
 }
 
 /// Leaves the nearest `most_` of the points found and lowers the bound to the furthest of them. The number of
@@ -146,14 +235,7 @@ inline void TreeWalk::keep_nearest() {
     }
   }
   if (high_count == most_) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const double d = distance2_[i];
-      distance2_[kept] = d;
-      place_[kept] = place_[i];
-      kept += d <= high ? 1 : 0;
-    }
-    count_ = kept;
+    drop_further(high);
     bound_ = high;
     bound_index_ = 0xffffffff;
     return;

@@ -52,7 +52,10 @@ class TreeWalk {
   void keep_nearest();
   void sort_nearest();
   [[nodiscard]] std::uint32_t near_points(const Leaf& leaf, double* distance2) const;
+  void add_near(const Leaf& leaf);
   void scan(const Leaf& leaf, const Eigen::Vector3d* side);
+  void drop_further(double distance2);
+  struct Avx512;
 
   const PointTree& tree_;
   Leaf leaf_;
@@ -66,8 +69,9 @@ class TreeWalk {
   std::uint32_t bound_index_ = 0;
   std::array<double, 3> at_{};
   static constexpr std::size_t kRoom = 2 * NeighbourSearch::kMost + 2 * PointTree::kLeafPoints;
-  std::array<double, kRoom + 1> distance2_{};
-  std::array<std::uint32_t, kRoom> place_{};
+  static constexpr std::size_t kLanes = 8;
+  std::array<double, kRoom + kLanes> distance2_{};
+  std::array<std::uint32_t, kRoom + kLanes> place_{};
   std::array<Neighbour, NeighbourSearch::kMost> found_{};
 };
 
