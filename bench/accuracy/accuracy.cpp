@@ -1,5 +1,6 @@
 // How true results are, on scenes whose truth is known.
-//   bench_accuracy [normals|smoothing|denoising|transients|merging|axes|alignment|bends|terrain]
+//   bench_accuracy
+//   [normals|smoothing|denoising|transients|merging|axes|alignment|real_alignment|bends|terrain]
 // Prints Markdown tables; the same numbers on every run, whatever the threads.
 
 #include "tables.h"
@@ -35,8 +36,8 @@ constexpr std::array kTopics{
     Topic{"normals", bench::print_normals},     Topic{"smoothing", bench::print_smoothing},
     Topic{"denoising", print_all_denoising},    Topic{"transients", print_all_transients},
     Topic{"merging", bench::print_merging},     Topic{"axes", bench::print_axes},
-    Topic{"alignment", bench::print_alignment}, Topic{"bends", bench::print_bends},
-    Topic{"terrain", print_all_terrain}};
+    Topic{"alignment", bench::print_alignment}, Topic{"real_alignment", bench::print_real_alignment},
+    Topic{"bends", bench::print_bends},         Topic{"terrain", print_all_terrain}};
 
 }  // namespace
 

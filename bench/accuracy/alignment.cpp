@@ -1,7 +1,7 @@
 // Pairs of scans of one world, cut so that they share a part: how many are aligned, how truly, and how many
 // wrongly.
 
-#include "peer_pair.h"
+#include "aligned_pairs.h"
 #include "street_scene.h"
 #include "tables.h"
 
@@ -27,8 +27,6 @@
 
 namespace bench {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct World {
   std::string name;
@@ -77,11 +75,6 @@ double limit_of(const ray::RayCloud& rays, const Eigen::Vector3d& direction, dou
   return share >= 1.0 ? *at + 1000.0 : *at;
 }
 
-struct CloudPair {
-  ray::RayCloud cloud, reference;
-  ray::Pose truth;
-};
-
 struct Scans {
   ray::RayCloud first, second;
 };
@@ -89,39 +82,12 @@ struct Scans {
 /// Two parts of which each has in common with the other a share of its points, one of them moved.
 CloudPair cut_pair(const Scans& scans, double overlap, double tilt, const ray::RandomStream& random,
                    std::uint64_t number) {
-  const auto uniform = [&](std::uint64_t draw, double low, double high) {
-    return low + (high - low) * random.uniform(number, draw);
-  };
-  const double heading = uniform(0, 0.0, 2.0 * std::numbers::pi);
+  const double heading = 2.0 * std::numbers::pi * random.uniform(number, 0);
   const Eigen::Vector3d direction(std::cos(heading), std::sin(heading), 0.0);
   const double share = 1.0 / (2.0 - overlap);
-  CloudPair pair;
-  pair.cloud = part_of(scans.first, direction, limit_of(scans.first, direction, share));
-  pair.reference = part_of(scans.second, -direction, limit_of(scans.second, -direction, share));
-  const Eigen::Matrix3d level =
-      Eigen::AngleAxisd(uniform(1, 0.0, 2.0 * std::numbers::pi), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const double towards = uniform(5, 0.0, 2.0 * std::numbers::pi);
-  const ray::Pose moved{
-      ray::rotation_pose(tilt * Eigen::Vector3d(std::cos(towards), std::sin(towards), 0.0)).rotation * level,
-      {uniform(2, -100.0, 100.0), uniform(3, -100.0, 100.0), uniform(4, -10.0, 10.0)}};
-  pair.cloud.transform(moved);
-  pair.truth = {moved.rotation.transpose(), -(moved.rotation.transpose() * moved.translation)};
-  return pair;
-}
-
-struct PoseError {
-  double turn = 0.0;   ///< rad
-  double shift = 0.0;  ///< m, of the middle of the cloud
-};
-
-PoseError error_of(const ray::Pose& pose, const CloudPair& pair) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  for (std::size_t i = 0; i < pair.cloud.size(); ++i)
-    if (pair.cloud.bounded[i] != 0) middle += pair.cloud.ends[i], count += 1.0;
-  middle /= count;
-  return {Eigen::AngleAxisd(Eigen::Matrix3d(pose.rotation.transpose() * pair.truth.rotation)).angle(),
-          (pose * middle - pair.truth * middle).norm()};
+  return moved_pair(part_of(scans.first, direction, limit_of(scans.first, direction, share)),
+                    part_of(scans.second, -direction, limit_of(scans.second, -direction, share)), tilt,
+                    random, number);
 }
 
 /// Without leaves.
@@ -145,92 +111,8 @@ Scans scans_of(const World& world, std::uint64_t seed) {
   return {scan(world.first, world.rays, 2 * seed), scan(world.second, world.reference_rays, 2 * seed + 1)};
 }
 
-struct Tally {
-  int pairs = 0, fine = 0, coarse = 0, wrong = 0, refused = 0, refused_right = 0;
-  std::vector<double> turns, shifts;
-  double seconds = 0.0;
-};
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-void tell(const ray::CloudAlignment& found, const PoseError& error, const char* outcome) {
-  if (std::getenv("RAYCLOUD_BENCH_PAIRS") == nullptr) return;
-  std::fprintf(stderr, "%s turn %.3f deg, shift %.3f m, overlap %.2f %.2f, agreement %.2f, rmse %.4f: %s\n",
-               outcome, error.turn / kDegree, error.shift, found.overlap, found.reference_overlap,
-               found.agreement, found.rmse, found.doubt.c_str());
-}
-
-/// RAYCLOUD_BENCH_PEER_PAIRS names a folder where pairs are left for other programs, each by its name.
-void judge(const CloudPair& pair, const std::string& name, Tally& tally) {
-  constexpr double kCoarseTurn = 0.5 * kDegree, kCoarseShift = 0.2, kFineTurn = 0.05 * kDegree,
-                   kFineShift = 0.02;
-  ray::MemorySource cloud(pair.cloud), reference(pair.reference);
-  const auto begin = std::chrono::steady_clock::now();
-  const ray::CloudAlignment found = align_clouds({}, cloud, reference);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  tally.seconds += seconds;
-  if (const char* folder = std::getenv("RAYCLOUD_BENCH_PEER_PAIRS"))
-    write_peer_pair(std::string(folder) + "/" + name,
-                    {pair.cloud, pair.reference, pair.truth, found, seconds});
-  const PoseError error = error_of(found.pose, pair);
-  const bool is_coarse = error.turn < kCoarseTurn && error.shift < kCoarseShift;
-  const bool is_fine = error.turn < kFineTurn && error.shift < kFineShift;
-  ++tally.pairs;
-  if (!found.doubt.empty()) {
-    ++tally.refused;
-    tally.refused_right += is_coarse ? 1 : 0;
-  } else {
-    tally.coarse += is_coarse ? 1 : 0;
-    tally.fine += is_fine ? 1 : 0;
-    tally.wrong += is_coarse ? 0 : 1;
-    if (is_coarse) tally.turns.push_back(error.turn), tally.shifts.push_back(error.shift);
-  }
-  tell(found, error,
-       !found.doubt.empty() ? (is_coarse ? "refused, though right" : "refused")
-       : is_fine            ? "fine"
-       : is_coarse          ? "coarse"
-                            : "WRONG");
-}
-
-std::uint64_t number_given(const char* variable, std::uint64_t otherwise) {
-  const char* given = std::getenv(variable);
-  return given != nullptr ? std::strtoull(given, nullptr, 10) : otherwise;
-}
-
-/// Numbers that alignment needs are chosen on other worlds and cuts than those of the tables: with
-/// RAYCLOUD_BENCH_WORLDS, above 0, every seed is another.
-std::uint64_t other_worlds() {
-  constexpr std::uint64_t kApart = 100;
-  return kApart * number_given("RAYCLOUD_BENCH_WORLDS", 0);
-}
-
-/// Whether one of the words of RAYCLOUD_BENCH_ROWS is in the name of a row, as in "street:50"; all rows where
-/// there are no words.
-bool is_wanted(const std::string& row) {
-  const char* words = std::getenv("RAYCLOUD_BENCH_ROWS");
-  if (words == nullptr) return true;
-  std::istringstream all(words);
-  for (std::string word; all >> word;)
-    if (row.find(word) != std::string::npos) return true;
-  return false;
-}
-
 std::string row_name(const World& world, double overlap) {
   return world.name + ":" + std::to_string(std::lround(100.0 * overlap));
-}
-
-void print_row(const std::string& name, const Tally& tally, const std::string& bar, bool met) {
-  const auto percent = [&](int part) { return 100.0 * part / tally.pairs; };
-  std::printf("| %s | %d | %.0f | %.0f | %.1f | %.0f | %.0f | %.4f, %.4f | %.4f, %.4f | %.2f | %s |\n",
-              name.c_str(), tally.pairs, percent(tally.coarse), percent(tally.fine), percent(tally.wrong),
-              percent(tally.refused), percent(tally.refused_right), quantile(tally.turns, 0.5) / kDegree,
-              quantile(tally.turns, 0.95) / kDegree, quantile(tally.shifts, 0.5),
-              quantile(tally.shifts, 0.95), tally.seconds / tally.pairs, verdict(bar, met).c_str());
-  std::fflush(stdout);
 }
 
 void pair_rows(const World& world, int pairs) {
@@ -296,9 +178,8 @@ void print_alignment() {
   std::printf(
       "\nOne cloud onto another: parts of two scans of one world with other people and vehicles in each, 2 cm of "
       "noise, any yaw, up to 100 m apart; by the share of its points that each has in common with the other. "
-      "Coarse: within 0.5 degrees and 0.2 m; fine: 0.05 degrees and 2 cm; wrong: not coarse, and not refused\n\n"
-      "| world, overlap | pairs | coarse, %% | fine, %% | wrong, %% | refused, %% | of these right, %% | turn, degrees: "
-      "median, 95 %% | shift, m | seconds | bar | |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "Coarse: within 0.5 degrees and 0.2 m; fine: 0.05 degrees and 2 cm; wrong: not coarse, and not refused\n\n");
+  print_alignment_header();
   const std::uint64_t other = other_worlds();
   const ray::Scene building = make_scene(ray::SceneKind::building, 2 + other),
                    forest = make_scene(ray::SceneKind::forest, 2 + other),

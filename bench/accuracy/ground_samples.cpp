@@ -1,6 +1,7 @@
 // The ground of real airborne scans whose ends people have told apart by hand: the samples of the ISPRS test
 // of ground filters (Sithole and Vosselman, 2003), where their folder is.
 
+#include "real_data.h"
 #include "tables.h"
 
 #include <raycloud/core/memory_stream.h>
@@ -9,9 +10,7 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,20 +23,6 @@ constexpr double kBandOfSlope =
     1.25;  // m more for each unit of the mesh's slope, as Pingel et al. (2013) have it
 constexpr std::uint8_t kGround = 2;
 
-std::string sample_file(const std::string& number) {
-  const char* set = std::getenv("RAYCLOUD_TEST_DATA");
-  std::filesystem::path folder = set != nullptr ? set : "";
-  for (auto above = std::filesystem::current_path(); folder.empty(); above = above.parent_path()) {
-    if (std::filesystem::is_directory(above / "shared" / "data")) folder = above / "shared" / "data";
-    if (above == above.root_path()) break;
-  }
-  for (const char* extension : {".ply", ".ply.xz"}) {
-    const auto file = folder / ("isprs_samp" + number + extension);
-    if (std::filesystem::exists(file)) return file.string();
-  }
-  return {};
-}
-
 struct GroundSample {
   ray::RayCloud cloud;  ///< seen from straight above, as nothing is known of the sensor
   std::vector<std::uint8_t> classes;
@@ -46,7 +31,7 @@ struct GroundSample {
 /// x, y and z as double and the class as a byte.
 GroundSample read_sample(const std::string& file) {
   GroundSample sample;
-  FILE* in = popen(((file.ends_with(".xz") ? "xz -dc " : "cat ") + file).c_str(), "r");
+  FILE* in = popen(printing(file).c_str(), "r");
   if (in == nullptr) return sample;
   char line[200];
   std::size_t count = 0;
@@ -111,7 +96,7 @@ void print_ground_samples() {
   double sum = 0.0, sum_by_default = 0.0;
   int count = 0;
   for (const char* number : {"11", "12", "21", "22", "23", "24", "31"}) {
-    const std::string file = sample_file(number);
+    const std::string file = real_file(std::string("isprs_samp") + number);
     if (file.empty()) continue;
     const GroundSample sample = read_sample(file);
     const SampleErrors errors = errors_of(sample, kGradient);

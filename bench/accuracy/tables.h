@@ -16,6 +16,7 @@ void print_opacity();
 void print_merging();
 void print_axes();
 void print_alignment();
+void print_real_alignment();
 void print_bends();
 void print_terrain();
 void print_ground_samples();
