@@ -72,6 +72,12 @@ FineFit last_fit(const Context& context, const Known& cloud, const Known& refere
   return narrow.count < kShare * fit.count ? fit : narrow;
 }
 
+/// Whether two poses put the cloud to different places, if only a quarter of a patch apart.
+bool is_elsewhere(const Pose& a, const Pose& b, const Known& cloud) {
+  constexpr double kApart = 0.25;  // widths
+  return (a.translation - b.translation).norm() > kApart * cloud.fine.width() || !is_same_place(a, b, cloud);
+}
+
 /// Of few patches each counts, and what is wrong with it: of a sparse scan of rings a wide one is seldom a
 /// plane. Ones half as wide take their place where as many find another.
 FineFit narrower_fit(const Context& context, RaySource& cloud_source, RaySource& reference_source,
@@ -85,7 +91,8 @@ FineFit narrower_fit(const Context& context, RaySource& cloud_source, RaySource&
   };
   const PatchLevel from = level_of(cloud_source, cloud), onto = level_of(reference_source, reference);
   const FineFit narrower = fit_patches(context, from.patches(), onto, fit.pose, {kGate * onto.width(), 20});
-  return narrower.count < fit.count ? fit : narrower;
+  // Noise makes some of them round, and what is left may hold less: nobody judges where that slides to.
+  return narrower.count < fit.count || is_elsewhere(narrower.pose, fit.pose, cloud) ? fit : narrower;
 }
 
 /// Adds what comes of the poses beside one to others, the best first.
@@ -124,6 +131,25 @@ bool fits_verticals(const Pose& pose, const Verticals& verticals) {
   return up.dot(verticals.reference.transpose() * Eigen::Vector3d::UnitZ()) > std::cos(kTilt);
 }
 
+/// Whether a search with the ones finds what one with the others does.
+bool are_alike(const Verticals& a, const Verticals& b) {
+  constexpr double kTilt = 0.1;  // rad
+  const auto is_like = [](const Eigen::Matrix3d& one, const Eigen::Matrix3d& other) {
+    return one.row(2).dot(other.row(2)) > std::cos(kTilt);  // what comes to be up
+  };
+  return is_like(a.cloud, b.cloud) && is_like(a.reference, b.reference);
+}
+
+/// What may be upright in either cloud, together.
+std::vector<Verticals> maybe_askew(const Known& cloud, const Known& reference) {
+  constexpr std::size_t kMost = 2;
+  std::vector<Verticals> askew;
+  for (const Eigen::Vector3d& up : maybe_up(cloud.fine, kMost))
+    for (const Eigen::Vector3d& reference_up : maybe_up(reference.fine, kMost))
+      askew.push_back({upright(up), upright(reference_up)});
+  return askew;
+}
+
 /// The search turns the cloud about the vertical, and so finds little if one of the clouds is tilted. Where
 /// what it found is tilted or refuted, it is made again with the floors of both level, and then as the best
 /// tilts them.
@@ -138,13 +164,15 @@ void search_tilted(const Context& context, const Known& cloud, const Known& refe
     const Hypothesis& best = all.front();
     return !best.is_idle() && !best.is_refuted() && is_searched(best.pose);
   };
+  // A right pose nearly always has more that speaks for it than against.
+  const auto is_clear = [&] { return is_found() && all.front().score > 0.0; };
   const auto add = [&](const Verticals& verticals) {
     const std::vector<Hypothesis> more = search(context, cloud, reference, jury, verticals);
     all.insert(all.end(), more.begin(), more.end());
     sort_by_score(all);
     searched.push_back(verticals);
   };
-  if (is_found()) return;
+  if (is_clear()) return;
   const Verticals floors{level_by_floors(cloud), level_by_floors(reference)}, none;
   const auto is_upright = [&](const Eigen::Matrix3d& rotation) {
     return fits_verticals({rotation, {}}, none);
@@ -152,6 +180,10 @@ void search_tilted(const Context& context, const Known& cloud, const Known& refe
   if (!is_upright(floors.cloud) || !is_upright(floors.reference)) add(floors);
   if (!is_found() && !is_searched(all.front().pose))
     add({upright(all.front().pose.rotation.transpose() * Eigen::Vector3d::UnitZ()), none.reference});
+  for (const Verticals& askew : maybe_askew(cloud, reference))
+    if (!is_clear() && std::none_of(searched.begin(), searched.end(),
+                                    [&](const Verticals& one) { return are_alike(askew, one); }))
+      add(askew);
 }
 
 /// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
@@ -217,23 +249,24 @@ struct Case {
   const Jury& jury;
 };
 
-/// Whether two poses put the cloud to different places, if only a quarter of a patch apart.
-bool is_elsewhere(const Pose& a, const Pose& b, const Known& cloud) {
-  constexpr double kApart = 0.25;  // widths
-  return (a.translation - b.translation).norm() > kApart * cloud.fine.width() || !is_same_place(a, b, cloud);
-}
+/// Where the last fit rests.
+struct Rest {
+  Hypothesis place;
+  FineFit fit;
+};
 
-/// Where the last fit rests, from a hypothesis: it may creep, and then is made again.
-Hypothesis settled(const Case& of, const Hypothesis& hypothesis) {
+/// From a hypothesis: it may creep, and then is fitted again.
+Rest settled(const Case& of, const Hypothesis& hypothesis) {
   constexpr int kMostFits = 3;
-  Hypothesis rests{hypothesis.pose, {}, {}, 0.0};
+  Rest rest{{hypothesis.pose, {}, {}, 0.0}, {}};
   for (int i = 0; i < kMostFits; ++i) {
-    const Pose before = rests.pose;
-    rests.pose = last_fit(of.context, of.cloud, of.reference, before).pose;
-    if (!is_elsewhere(rests.pose, before, of.cloud)) break;
+    const Pose before = rest.place.pose;
+    rest.fit = last_fit(of.context, of.cloud, of.reference, before);
+    rest.place.pose = rest.fit.pose;
+    if (!is_elsewhere(rest.place.pose, before, of.cloud)) break;
   }
-  of.jury.judge(rests);
-  return rests;
+  of.jury.judge(rest.place);
+  return rest;
 }
 
 /// The best pose, judged by patches and by rays.
@@ -252,13 +285,13 @@ bool is_refuted(const Best& best) {
 }
 
 /// What patches say clearly of two poses. Where little is in both, much of what speaks against a pose is
-/// edges, and apart: far away, what is refuted must tell, too.
+/// edges, and apart: far away, what is refuted must tell, too, or narrow patches beyond doubt: of sparse
+/// scans wide ones fit nearly anywhere.
 bool is_worse(const Case& of, const Hypothesis& other, const Hypothesis& best) {
-  constexpr double kSigmas = 2.0;
-  const bool is_less = sigmas_worse(other, best) >= kSigmas;
-  if (!is_near(other.pose, best.pose, of.cloud))
-    return is_less && sigmas_more_refuted(other, best) >= kSigmas;
-  return is_less || of.jury.sigmas_worse_closely(other, best) >= kSigmas;
+  constexpr double kSigmas = 2.0, kSigmasFar = 3.0;
+  const bool near = is_near(other.pose, best.pose, of.cloud), is_less = sigmas_worse(other, best) >= kSigmas;
+  if (is_less && (near || sigmas_more_refuted(other, best) >= kSigmas)) return true;
+  return of.jury.sigmas_worse_closely(other, best) >= (near ? kSigmas : kSigmasFar);
 }
 
 /// What rays say of two poses: near each other they tell of the same surfaces.
@@ -268,15 +301,33 @@ bool is_worse_by_rays(const Case& of, const Hypothesis& other, const Best& best)
          sigmas_worse(of.jury.judged_by_rays(of.context, other.pose), best.by_rays, 0.0) >= kSigmas;
 }
 
+/// The score from which on another pose may be as good as the best.
+double least_of_rivals(const Hypothesis& best) {
+  constexpr double kLess = 0.5;        // of the score of the best
+  constexpr double kLessKnown = 0.03;  // or of what is known of it
+  return best.score -
+         std::max(kLess * std::abs(best.score), kLessKnown * (best.there.known + best.back.known));
+}
+
+/// The one with the best score, unless narrow patches are clearly for another that scores nearly as much.
+Hypothesis best_of(const Case& of, const std::vector<Hypothesis>& judged) {
+  constexpr double kSigmas = 3.0;
+  Hypothesis best = judged.front();
+  if (best.is_idle()) return best;
+  const double least = least_of_rivals(best);
+  for (const Hypothesis& other : without_twins(judged, of.cloud))
+    if (!other.is_idle() && other.score > least && is_elsewhere(other.pose, best.pose, of.cloud) &&
+        of.jury.sigmas_worse_closely(best, other) >= kSigmas)
+      best = other;
+  return best;
+}
+
 /// All that are as good elsewhere, each once. Only where the finest fit rests is a rival: on the way there,
 /// what fits less may not show yet.
 std::vector<Hypothesis> rivals_of(const Case& of, const std::vector<Hypothesis>& judged,
                                   const Best& judged_best) {
-  constexpr double kLess = 0.5;        // of the score of the best, for others to be rivals
-  constexpr double kLessKnown = 0.03;  // or of what is known of it
   const Hypothesis& best = judged_best.by_patches;
-  const double least =
-      best.score - std::max(kLess * std::abs(best.score), kLessKnown * (best.there.known + best.back.known));
+  const double least = least_of_rivals(best);
   const auto is_rival = [&](const Hypothesis& other) {
     return is_elsewhere(other.pose, best.pose, of.cloud) && !other.is_idle() && other.score > least &&
            !is_worse(of, other, best);
@@ -284,10 +335,13 @@ std::vector<Hypothesis> rivals_of(const Case& of, const std::vector<Hypothesis>&
   std::vector<Hypothesis> maybe, rivals;
   std::copy_if(judged.begin(), judged.end(), std::back_inserter(maybe), is_rival);
   for (const Hypothesis& one : without_twins(maybe, of.cloud)) {
-    const Hypothesis rests = settled(of, one);
-    if (is_rival(rests) && !is_worse_by_rays(of, rests, judged_best)) rivals.push_back(rests);
+    const Rest rest = settled(of, one);
+    // What nothing holds nearby is on the way to the best.
+    const bool is_on_the_way = is_near(rest.place.pose, best.pose, of.cloud) && is_loose(rest.fit, of.cloud);
+    if (is_rival(rest.place) && !is_on_the_way && !is_worse_by_rays(of, rest.place, judged_best))
+      rivals.push_back(rest.place);
   }
-  return rivals;
+  return without_twins(rivals, of.cloud);
 }
 
 Doubt doubt_of(const Case& of, const std::vector<Hypothesis>& judged, const Hypothesis& best) {
@@ -298,7 +352,7 @@ Doubt doubt_of(const Case& of, const std::vector<Hypothesis>& judged, const Hypo
   if (is_refuted(judged_best))
     return {percent(best.refuted_share()) +
             " of the surfaces would be where the other cloud has seen that there are none: " + found};
-  if (sigmas_pierced(judged_best.by_rays) >= kSigmasPierced)
+  if (of.jury.sigmas_pierced(judged_best.by_rays) >= kSigmasPierced)
     return {"rays of one cloud would go through " + percent(judged_best.by_rays.refuted_share()) +
             " of the surfaces of the other: " + found};
   const std::vector<Hypothesis> rivals = rivals_of(of, judged, judged_best);
@@ -328,7 +382,7 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   const Jury jury(cloud, reference);
   const Case of{context, cloud, reference, jury};
   const std::vector<Hypothesis> judged = judge(context, cloud, reference, jury, local);
-  Hypothesis best = judged.front();
+  Hypothesis best = best_of(of, judged);
   Placed placed;
   placed.fit = last_fit(context, cloud, reference, best.pose);
   // Where the last fit leaves the place that the ones before it found, it must rest in the other.
@@ -347,6 +401,11 @@ Placed place(const Context& context, const Known& cloud, const Known& reference,
   alignment.reference_overlap = share(back.same, back.known() + back.unknown);
   alignment.agreement = share(there.same + back.same, there.known() + back.known());
   Doubt doubt = doubt_of(of, judged, best);
+  constexpr double kLeastAgreement = 0.9;  // right poses: more; wrong ones nearly all less
+  if (doubt.text.empty() && alignment.agreement < kLeastAgreement)
+    doubt.text = "only " + percent(alignment.agreement) +
+                 " of what both clouds have seen agrees: the best overlap found is " +
+                 percent(best.overlap());
   if (doubt.text.empty() && (!is_held || is_loose(placed.fit, cloud)))
     doubt.text = "nothing holds it where it fits best: the best overlap found is " + percent(best.overlap());
   alignment.doubt = doubt.text;

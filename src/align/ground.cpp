@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace ray::align {
 namespace {
@@ -138,6 +139,36 @@ std::optional<Eigen::Matrix3d> levelling(const std::vector<Floor>& floors) {
     rotation = to_up(plane_normal(level, ground->height, reach)) * rotation;
   }
   return rotation;
+}
+
+std::vector<Eigen::Vector3d> maybe_up(const PatchLevel& level, std::size_t most) {
+  constexpr double kMostTilt = std::numbers::pi / 3.0, kReach = 0.2, kApart = 0.35;  // rad
+  constexpr double kLeastShare = 0.25;
+  constexpr std::size_t kAsked = 1000;
+  const std::vector<Floor> floors = floor_patches(level, kMostTilt);
+  const std::size_t stride = 1 + floors.size() / kAsked;
+  const auto near = [&](const Eigen::Vector3d& direction) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < floors.size(); i += stride)
+      sum += floors[i].area * tukey((floors[i].normal - direction).norm() / kReach) * floors[i].normal;
+    return sum;
+  };
+  std::vector<Eigen::Vector3d> ups;
+  double first = 0.0;
+  while (ups.size() < most) {
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < floors.size(); i += stride) {
+      const Eigen::Vector3d sum = near(floors[i].normal);
+      const bool is_new = std::none_of(ups.begin(), ups.end(), [&](const Eigen::Vector3d& up) {
+        return up.dot(floors[i].normal) > std::cos(kApart);
+      });
+      if (is_new && sum.squaredNorm() > best.squaredNorm()) best = sum;
+    }
+    if (ups.empty()) first = best.norm();
+    if (!(best.norm() > 0.0) || best.norm() < kLeastShare * first) break;
+    ups.push_back(best.normalized());
+  }
+  return ups;
 }
 
 }  // namespace ray::align

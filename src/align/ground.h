@@ -32,4 +32,9 @@ struct Ground {
 /// up, refined by the plane through the ground's points.
 [[nodiscard]] std::optional<Eigen::Matrix3d> levelling(const std::vector<Floor>& floors);
 
+/// Directions that may be up, the one with most area first: those within 60 degrees of up that flat patches
+/// often face, each with at least a quarter of the area of the first. Of a scanner that was held askew the
+/// ground is one of them; so may roofs be. At most `most`.
+[[nodiscard]] std::vector<Eigen::Vector3d> maybe_up(const PatchLevel& level, std::size_t most);
+
 }  // namespace ray::align

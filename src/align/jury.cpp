@@ -123,21 +123,22 @@ Hypothesis Jury::judged_by_rays(const Context& context, const Pose& pose) const 
           0.0};
 }
 
-double Jury::glance(const Pose& pose) const {
-  return evidence_of(few_there_, pose, {reference_.fine, reference_.free}, tolerance_).sum() +
-         evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
-}
-
-double sigmas_pierced(const Hypothesis& by_rays) {
-  constexpr double kUsual = 0.01;
+double Jury::sigmas_pierced(const Hypothesis& by_rays) const {
+  constexpr double kUsual = 0.01, kGap = 0.8;  // m: wider patches have gaps, between cars, in fences
+  const double usual = kUsual * std::max(1.0, reference_.fine.width() / kGap);
   double sum = 0.0, squares = 0.0;
   for (const Evidence* side : {&by_rays.there, &by_rays.back})
     for (const Evidence::Cell& cell : side->cells) {
-      const double excess = static_cast<double>(cell.refuted) - kUsual * static_cast<double>(cell.known);
+      const double excess = static_cast<double>(cell.refuted) - usual * static_cast<double>(cell.known);
       sum += excess;
       squares += excess * excess;
     }
   return sum > 0.0 ? sum / std::sqrt(squares) : 0.0;
+}
+
+double Jury::glance(const Pose& pose) const {
+  return evidence_of(few_there_, pose, {reference_.fine, reference_.free}, tolerance_).sum() +
+         evidence_of(few_back_, inverse_of(pose), {cloud_.fine, cloud_.free}, tolerance_).sum();
 }
 
 double sigmas_worse(const Hypothesis& other, const Hypothesis& best, double least_share) {

@@ -57,10 +57,6 @@ struct Hypothesis {
 /// The same of what is refuted alone.
 [[nodiscard]] double sigmas_more_refuted(const Hypothesis& other, const Hypothesis& best);
 
-/// Of a pose judged by rays: by how many standard errors these go through more surfaces than the hundredth
-/// that is usual of right poses.
-[[nodiscard]] double sigmas_pierced(const Hypothesis& by_rays);
-
 /// Judges poses from both sides, by an even choice of the patches of either cloud.
 class Jury {
  public:
@@ -75,6 +71,9 @@ class Jury {
   /// patch, where free cubes leave two patches before each surface untold. Of right poses that is less than 1
   /// % of space, but for what has moved.
   [[nodiscard]] Hypothesis judged_by_rays(const Context& context, const Pose& pose) const;
+  /// Of a pose judged by rays: by how many standard errors these go through more surfaces than is usual of
+  /// right poses: a hundredth, and more of patches wider than 80 cm.
+  [[nodiscard]] double sigmas_pierced(const Hypothesis& by_rays) const;
   /// The score of a pose by an eighth of the witnesses.
   [[nodiscard]] double glance(const Pose& pose) const;
 

@@ -1,5 +1,7 @@
-# Real pairs whose transforms are known to about 0.3 degrees and 5 cm, where they are at hand: small_gicp's example
-# (MIT) and two car sweeps of libpointmatcher (BSD), one of them tilted by 12 degrees.
+# Real pairs, where they are at hand: of which the transforms are known to about 0.3 degrees and 5 cm, small_gicp's
+# example (MIT) and two car sweeps of libpointmatcher (BSD), one of them tilted by 12 degrees; two sweeps of a scanner
+# in the hand, a moment apart and tilted against each other by 40 degrees (Newer College); and 5 s of a walk onto
+# another 5 s of it, whose poses are known (BALM).
 data=${RAYCLOUD_TEST_DATA:-} above=$CLI
 while [ -z "$data" ] && [ "$above" != / ]; do
   above=$(dirname "$above")
@@ -30,3 +32,19 @@ done
 tr ',' ' ' <"$data/carCloudList.csv" | awk '/401/ { for (i = 2; i <= 13; ++i) printf "%s ", $i }' >truth.txt
 rayalign car_401.ply car_400.ply -o aligned.ply >out
 off out truth.txt 0.4 0.08
+
+for name in 00 01; do xz -dkc "$data/newer_college_$name.ply.xz" >held_$name.ply; done
+for pair in '00 01' '01 00'; do
+  rayalign "held_${pair% *}.ply" "held_${pair#* }.ply" -o aligned.ply >out
+  awk -v pair="$pair" '/^translation/ { split($2, t, ","); if (t[1] ^ 2 + t[2] ^ 2 + t[3] ^ 2 > 1) { print pair, "is far off:", $0; exit 1 } }
+    /^rotation/ { split($3, r, ","); turn = sqrt(r[1] ^ 2 + r[2] ^ 2 + r[3] ^ 2); if (turn < 49 || turn > 51) { print pair, "is turned:", $0; exit 1 } }' out
+done
+xz -dkc "$data/balm.ply.xz" >walk.ply
+raysplit -q walk.ply grid 0,0,0,5
+set -- walk_*.ply
+cp "$2" there.ply && cp "$5" here.ply
+rayrotate -q here.ply 0,0,90
+raytranslate -q here.ply 10,20,1
+printf '0 1 0 -20\n-1 0 0 10\n0 0 1 -1\n' >truth.txt
+rayalign here.ply there.ply -o aligned.ply >out
+off out truth.txt 0.4 1

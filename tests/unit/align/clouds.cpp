@@ -96,6 +96,21 @@ Pose tilted_by_ten_degrees() {
   return moved;
 }
 
+/// A scanner in the hand, held one way and then another.
+TEST(AlignClouds, HeldAskew) {
+  RayCloud reference = room_scan(1), rays = room_scan(2);
+  const Pose held = rotation_pose({-0.2, 0.15, 0.0});
+  reference.transform(held);
+  Pose moved = moved_by(100.0, {1.0, -2.0, 0.5});
+  moved.rotation = rotation_pose({0.3, 0.35, 0.0}).rotation * moved.rotation;
+  rays.transform(moved);
+  const CloudAlignment found = aligned_with(rays, reference);
+  EXPECT_EQ(found.doubt, "");
+  const Eigen::Matrix3d upright = held.rotation.transpose();
+  expect_undone({upright * found.pose.rotation, upright * found.pose.translation}, moved, room_scan(1),
+                0.05 * kDegree, 0.01);
+}
+
 /// Storeys look alike: tilted, one lies on another long before the right one is found.
 TEST(AlignClouds, ABuildingTiltedByTenDegrees) {
   RayCloud rays = building_scan(2);
