@@ -27,7 +27,8 @@ template <class Lanes>
 struct MomentSums {
   Lanes x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 
-  [[gnu::always_inline]] void add(Lanes at_x, Lanes at_y, Lanes at_z) {
+  /// By reference, as what holds wide registers is not passed to a function that does not know them.
+  [[gnu::always_inline]] void add(const Lanes& at_x, const Lanes& at_y, const Lanes& at_z) {
     x += at_x, y += at_y, z += at_z;
     xx += at_x * at_x, xy += at_x * at_y, xz += at_x * at_z;
     yy += at_y * at_y, yz += at_y * at_z, zz += at_z * at_z;
@@ -195,15 +196,8 @@ struct Neighbourhood::Kernels {
     put(sums, total);
   }
 #ifdef RAY_HAS_LANES
-  /// Of both halves.
-  [[gnu::always_inline]] static FourDoubles low(EightDoubles v) {
-    return FourDoubles{v[0], v[1], v[2], v[3]};
-  }
-  [[gnu::always_inline]] static FourDoubles high(EightDoubles v) {
-    return FourDoubles{v[4], v[5], v[6], v[7]};
-  }
   [[gnu::always_inline]] static double sum_of(EightDoubles v) {
-    return sum_of(low(v) + high(v));
+    return sum_of(FourDoubles{v[0] + v[4], v[1] + v[5], v[2] + v[6], v[3] + v[7]});
   }
 #endif
   [[gnu::always_inline]] static double sum_of(FourDoubles v) {
@@ -295,7 +289,9 @@ struct Neighbourhood::Kernels {
       const EightDoubles distance2 = eight(around.distance2_, i, some);
       furthest2 = distance2 > furthest2 ? distance2 : furthest2;
     }
-    total.furthest2 = std::max(greatest(low(furthest2)), greatest(high(furthest2)));
+    std::array<double, kLanes> of_lanes;
+    _mm512_storeu_pd(of_lanes.data(), furthest2);
+    total.furthest2 = *std::max_element(of_lanes.begin(), of_lanes.end());
     if (!(total.furthest2 > 0.0)) return;
     const double scale = total.scale = scale_of(total.furthest2);
     MomentSums<EightDoubles> sums;
