@@ -1,5 +1,7 @@
 #include "on_wire.h"
 
+#include <raycloud/core/lanes.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -117,14 +119,17 @@ struct WireCounts {
 WireCounts count_on_plain(const WireColumns& points, const WireLine& line) {
   return count_on_line(points, line);
 }
-#ifdef __x86_64__
-[[gnu::target("avx2")]] WireCounts count_on_avx2(const WireColumns& points, const WireLine& line) {
+#ifdef RAY_HAS_LANES
+RAY_AVX2 WireCounts count_on_avx2(const WireColumns& points, const WireLine& line) {
   return count_on_line(points, line);
 }
-const auto count_on_fast = __builtin_cpu_supports("avx2") ? count_on_avx2 : count_on_plain;
-#else
-constexpr auto count_on_fast = count_on_plain;
 #endif
+WireCounts count_on_fast(const WireColumns& points, const WireLine& line) {
+#ifdef RAY_HAS_LANES
+  if (lanes_in_use != LaneSet::kPlain) return count_on_avx2(points, line);
+#endif
+  return count_on_plain(points, line);
+}
 
 /// Whether it is worth trying a line: by single precision, in which many points go at once. Never false where
 /// a trial would find a wire.

@@ -74,17 +74,21 @@ std::vector<Move> smooth_block(const Context& context, Block<SeenPoint>&& block,
   moves.resize(tree.size(), Move::Zero());
   for_each_place(context, tree, [&](NeighbourSearch& search, std::size_t begin, std::size_t end) {
     SurfaceFit fit(tree, planes);
+    const auto move = [&] {
+      for (const auto& [place, height] : fit.heights())
+        moves[tree.index(place)] = move_of(planes[place], height, tree.to_sensor(place));
+    };
     std::size_t leaf_end = begin;
     for (std::size_t place = begin; place < end; ++place) {
       if (place == leaf_end) {
         leaf_end = std::min(search.leaf_of(place).end, end);
         search.look_around(place, reach_of_leaf(std::span(planes).subspan(place, leaf_end - place)));
       }
-      const LocalPlane& plane = planes[place];
-      if (!block.is_own(tree.index(place)) || plane.normal.isZero()) continue;
-      moves[tree.index(place)] =
-          move_of(plane, fit.height(place, neighbours_of(search, place)), tree.to_sensor(place));
+      if (!block.is_own(tree.index(place)) || planes[place].normal.isZero()) continue;
+      fit.add(place, neighbours_of(search, place));
+      if (fit.is_full()) move();
     }
+    move();
   });
   return moves;
 }

@@ -1,10 +1,14 @@
 #pragma once
 /// The surface that the planes around a point are samples of.
 
+#include "plane_sums.h"
+
 #include <raycloud/spatial/neighbour_search.h>
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace ray {
@@ -15,16 +19,6 @@ struct LocalPlane {
   float height = 0.0F;                               // m
   float spread2 = 0.0F;  // m², variance of its points along it, both ways together
   float reach = 0.0F;    // m, of its neighbours
-};
-
-/// Planes in columns, a whole number of lanes of them, seen from a point, in units of length.
-struct SeenPlanes {
-  static constexpr std::size_t kLanes = 8, kMost = 64;
-  using Column = std::array<float, kMost>;
-  std::size_t size = 0;
-  alignas(32) Column normal_x{}, normal_y{}, normal_z{};
-  alignas(32) Column offset_x{}, offset_y{}, offset_z{};
-  alignas(32) Column height{}, spread2{};
 };
 
 /// The surface through the planes around a point, which are a sample of its heights and slopes. Their mean
@@ -39,17 +33,30 @@ class SurfaceFit {
 
   SurfaceFit(const PointTree& tree, std::span<const LocalPlane> planes) : tree_(tree), planes_(planes) {}
 
-  /// Of the surface from the point, along the normal of its plane, m. Depends on the neighbours, not on their
-  /// order. Precondition: the point has a plane.
-  [[nodiscard]] double height(std::size_t place, std::span<const std::uint32_t> neighbours);
+  struct Height {
+    std::size_t place = 0;
+    double height = 0.0;
+  };
+
+  /// Depends on the neighbours, not on their order. Precondition: the point has a plane; not is_full().
+  void add(std::size_t place, std::span<const std::uint32_t> neighbours);
+  [[nodiscard]] bool is_full() const { return count_ == kHeights; }
+  /// Of the surface from each point that was added since the last call, along the normal of its plane, m.
+  [[nodiscard]] std::span<const Height> heights();
 
  private:
-  void take(std::size_t place, const LocalPlane& own, std::span<const std::uint32_t> neighbours);
+  static constexpr std::size_t kAtOnce = 4;
+
+  void take(std::size_t place, std::span<const std::uint32_t> neighbours);
+  void take_some(std::span<const std::uint32_t, kAtOnce> places, const Eigen::Vector3d& point,
+                 std::size_t at);
 
   const PointTree& tree_;
   std::span<const LocalPlane> planes_;
-  float unit_ = 1.0F;  // m, a power of two, at most the reach
   SeenPlanes seen_;
+  std::size_t count_ = 0;  // of points that wait for their height
+  std::array<PlaneSums, kHeights> sums_{};
+  std::array<Height, kHeights> heights_{};  // before they are known, the units of length, m
 };
 
 }  // namespace ray

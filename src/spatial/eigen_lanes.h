@@ -35,16 +35,20 @@ namespace eigen_lanes {
 inline double square_root(double v) {
   return std::sqrt(v);
 }
-/// Of four.
+/// Of several, two by two, which takes no longer.
 template <class Value>
-[[gnu::always_inline]] inline Value square_root(Value v) {
-  static_assert(sizeof(Value) == 4 * sizeof(double));
+[[gnu::always_inline]] inline Value square_root(const Value& v) {
+  Value root;
 #ifdef __SSE2__
-  const __m128d low = _mm_sqrt_pd(__m128d{v[0], v[1]}), high = _mm_sqrt_pd(__m128d{v[2], v[3]});
-  return Value{low[0], low[1], high[0], high[1]};
+  for (std::size_t i = 0; i < sizeof(Value) / sizeof(double); i += 2) {
+    const __m128d two = _mm_sqrt_pd(__m128d{v[i], v[i + 1]});
+    root[i] = two[0], root[i + 1] = two[1];
+  }
 #else
-  return Value{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+  for (std::size_t i = 0; i < sizeof(Value) / sizeof(double); ++i)
+    root[i] = std::sqrt(v[i]);
 #endif
+  return root;
 }
 
 template <class Value>

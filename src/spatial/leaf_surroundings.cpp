@@ -194,23 +194,17 @@ std::optional<std::span<const std::uint32_t>> LeafSurroundings::within(std::size
                                                                        double reach,
                                                                        const Eigen::Vector3d& side) {
   if (!(reach <= reach_)) return {};
-  const float nearly = static_cast<float>(reach);
-  collect(place, nearly * 1.000001F + 2.0F * slack_, &side);
+  const float nearly = static_cast<float>(reach), whole = nearly * 1.000001F + 2.0F * slack_;
+  collect(place, whole, &side);
   const float sure = std::max(nearly * 0.999999F - 2.0F * slack_, 0.0F), sure2 = sure * sure * 0.99999F;
-  const double x = tree_.x_[place], y = tree_.y_[place], z = tree_.z_[place];
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < near_.size; ++i) {
-    const std::uint32_t other = near_.place[i];
-    inside_[kept] = other;
-    bool is_within = near_.distance2[i] < sure2;
-    if (!is_within) {  // single precision does not tell
-      const double dx = tree_.x_[other] - x, dy = tree_.y_[other] - y, dz = tree_.z_[other] - z;
-      is_within = dx * dx + dy * dy + dz * dz <= reach * reach;
-    }
-    kept += is_within ? 1 : 0;
-  }
-  if (kept > most) return {};
-  return std::span<const std::uint32_t>{inside_.data(), kept};
+  const std::size_t surely = sieve_count(near_, sure2);
+  const bool is_told = surely == near_.size || surely > most;  // by single precision, who is within reach
+  if (is_told && near_.size > most) drop_further(most, whole);
+  if (is_told && near_.size <= most) return std::span<const std::uint32_t>{near_.place.data(), near_.size};
+  const Nearest nearest = exact(place, most, reach * reach, nullptr);
+  for (std::size_t i = 0; i < nearest.size; ++i)
+    inside_[i] = nearest.list[i].place;
+  return std::span<const std::uint32_t>{inside_.data(), nearest.size};
 }
 
 double LeafSurroundings::furthest(const Eigen::Vector3d& middle, const Eigen::Vector3d& half) const {

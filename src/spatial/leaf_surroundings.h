@@ -41,8 +41,8 @@ class LeafSurroundings {
   /// of what was gathered. Precondition: has(place).
   std::optional<Nearest> nearest(std::size_t place, std::size_t count, double reach,
                                  const Eigen::Vector3d* side, Neighbourhood* into);
-  /// The places of all that are within reach, and of the side; nothing if they might lie outside of what was
-  /// gathered, or are more than `most`. Precondition: has(place).
+  /// The places of the nearest that are within reach, and of the side, in any order; nothing if they might
+  /// lie outside of what was gathered. Precondition: has(place).
   std::optional<std::span<const std::uint32_t>> within(std::size_t place, std::size_t most, double reach,
                                                        const Eigen::Vector3d& side);
   /// How far a box (m) reaches from that of the leaf at most. Precondition: something is gathered.

@@ -1,5 +1,4 @@
-#include "lanes.h"
-
+#include <raycloud/core/lanes.h>
 #include <raycloud/spatial/neighbourhood.h>
 
 #include <algorithm>
@@ -155,7 +154,7 @@ struct Neighbourhood::Kernels {
   [[gnu::always_inline]] static void put(Four values, Column<T>& column, std::size_t first) {
     std::memcpy(column.data() + first, &values, sizeof(values));
   }
-  [[gnu::always_inline]] static double greatest(FourDoubles of) {
+  [[gnu::always_inline]] static double greatest(const FourDoubles& of) {
     return std::max(std::max(of[0], of[1]), std::max(of[2], of[3]));
   }
   static constexpr double kRounds = 0x1.8p52;  // what is added to it becomes a whole number
@@ -195,16 +194,10 @@ struct Neighbourhood::Kernels {
     }
     put(sums, total);
   }
-#ifdef RAY_HAS_LANES
-  [[gnu::always_inline]] static double sum_of(EightDoubles v) {
-    return sum_of(FourDoubles{v[0] + v[4], v[1] + v[5], v[2] + v[6], v[3] + v[7]});
-  }
-#endif
-  [[gnu::always_inline]] static double sum_of(FourDoubles v) {
+  [[gnu::always_inline]] static double sum_of(const FourDoubles& v) {
     return (v[0] + v[1]) + (v[2] + v[3]);
   }
-  template <class Lanes>
-  [[gnu::always_inline]] static void put(const MomentSums<Lanes>& sums, Moments& total) {
+  [[gnu::always_inline]] static void put(const MomentSums<FourDoubles>& sums, Moments& total) {
     total.sum = {sum_of(sums.x), sum_of(sums.y), sum_of(sums.z)};
     total.products = {sum_of(sums.xx), sum_of(sums.xy), sum_of(sums.xz),
                       sum_of(sums.yy), sum_of(sums.yz), sum_of(sums.zz)};
@@ -283,15 +276,40 @@ struct Neighbourhood::Kernels {
   RAY_AVX512 static EightDoubles rounded(EightDoubles value, double scale) {
     return value * scale + kRounds - kRounds;
   }
+  RAY_AVX512 static double greatest_of(const EightDoubles& of) {
+    const FourDoubles high = __builtin_shufflevector(of, of, 4, 5, 6, 7);
+    const FourDoubles low = __builtin_shufflevector(of, of, 0, 1, 2, 3);
+    return greatest(low > high ? low : high);
+  }
+  /// By halves: of two sums each pair of lanes, of four each half, and of eight all.
+  RAY_AVX512 static EightDoubles pairs_of(const EightDoubles& a, const EightDoubles& b) {
+    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  RAY_AVX512 static EightDoubles halves_of(const EightDoubles& ab, const EightDoubles& cd) {
+    return __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13) +
+           __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  RAY_AVX512 static EightDoubles all_of(const EightDoubles& abcd, const EightDoubles& efgh) {
+    return __builtin_shufflevector(abcd, efgh, 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(abcd, efgh, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  RAY_AVX512 static void put_eight(const MomentSums<EightDoubles>& sums, Moments& total) {
+    const EightDoubles all = all_of(halves_of(pairs_of(sums.x, sums.y), pairs_of(sums.z, sums.xx)),
+                                    halves_of(pairs_of(sums.xy, sums.xz), pairs_of(sums.yy, sums.yz)));
+    total.sum = {all[0], all[1], all[2]};
+    total.products = {all[3], all[4], all[5], all[6], all[7], sum_of(halves(sums.zz))};
+  }
+  RAY_AVX512 static FourDoubles halves(const EightDoubles& of) {
+    return __builtin_shufflevector(of, of, 0, 1, 2, 3) + __builtin_shufflevector(of, of, 4, 5, 6, 7);
+  }
   RAY_AVX512 static void moments_avx512(const Neighbourhood& around, Some some, Moments& total) {
     EightDoubles furthest2{};
     for (std::size_t i = 0; i < around.size_; i += 8) {
       const EightDoubles distance2 = eight(around.distance2_, i, some);
       furthest2 = distance2 > furthest2 ? distance2 : furthest2;
     }
-    std::array<double, kLanes> of_lanes;
-    _mm512_storeu_pd(of_lanes.data(), furthest2);
-    total.furthest2 = *std::max_element(of_lanes.begin(), of_lanes.end());
+    total.furthest2 = greatest_of(furthest2);
     if (!(total.furthest2 > 0.0)) return;
     const double scale = total.scale = scale_of(total.furthest2);
     MomentSums<EightDoubles> sums;
@@ -301,33 +319,33 @@ struct Neighbourhood::Kernels {
                          z = rounded(eight(around.z_, i, some), scale);
       sums.add(x, y, z);
     }
-    put(sums, total);
+    put_eight(sums, total);
   }
 #endif
 
   static void look_up_fast(Neighbourhood& around) {
 #ifdef RAY_HAS_LANES
-    if (lanes_in_use != Lanes::kPlain) return look_up_avx2(around);
+    if (lanes_in_use != LaneSet::kPlain) return look_up_avx2(around);
 #endif
     look_up_plain(around);
   }
   static Some seen_from_fast(const Neighbourhood& around, const Eigen::Vector3d& side, double at_least) {
 #ifdef RAY_HAS_LANES
-    if (lanes_in_use == Lanes::kAvx512) return seen_from_avx512(around, side, at_least);
-    if (lanes_in_use == Lanes::kAvx2) return seen_from_avx2(around, side, at_least);
+    if (lanes_in_use == LaneSet::kAvx512) return seen_from_avx512(around, side, at_least);
+    if (lanes_in_use == LaneSet::kAvx2) return seen_from_avx2(around, side, at_least);
 #endif
     return seen_from_plain(around, side, at_least);
   }
   static Some nearest_fast(const Neighbourhood& around, Some some, std::size_t most) {
 #ifdef RAY_HAS_LANES
-    if (lanes_in_use != Lanes::kPlain) return nearest_avx2(around, some, most);
+    if (lanes_in_use != LaneSet::kPlain) return nearest_avx2(around, some, most);
 #endif
     return nearest_plain(around, some, most);
   }
   static void moments_fast(const Neighbourhood& around, Some some, Moments& total) {
 #ifdef RAY_HAS_LANES
-    if (lanes_in_use == Lanes::kAvx512) return moments_avx512(around, some, total);
-    if (lanes_in_use == Lanes::kAvx2) return moments_avx2(around, some, total);
+    if (lanes_in_use == LaneSet::kAvx512) return moments_avx512(around, some, total);
+    if (lanes_in_use == LaneSet::kAvx2) return moments_avx2(around, some, total);
 #endif
     moments_plain(around, some, total);
   }

@@ -1,9 +1,10 @@
 // The loops of point_sieve.h eight points at a time, where the processor can. The same operations in the same
 // order, so the same bits.
 
-#include "lanes.h"
 #include "point_sieve.h"
 #include "point_sieve_avx512.h"
+
+#include <raycloud/core/lanes.h>
 
 #ifdef RAY_HAS_LANES
 #include <immintrin.h>
@@ -192,32 +193,34 @@ RAY_AVX2 float sieve_least_sum(const SievePoints& points, const std::array<float
 }  // namespace avx2
 
 void sieve_box(const SieveSource& source, const SieveBox& box, SievePoints& points) {
-  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_box(source, box, points);
-  lanes_in_use == Lanes::kAvx2 ? avx2::sieve_box(source, box, points) : plain::sieve_box(source, box, points);
+  if (lanes_in_use == LaneSet::kAvx512) return avx512::sieve_box(source, box, points);
+  lanes_in_use == LaneSet::kAvx2 ? avx2::sieve_box(source, box, points)
+                                 : plain::sieve_box(source, box, points);
 }
 bool sieve_sphere(const SievePoints& points, const SieveSphere& sphere, SievedPoints& near) {
-  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_sphere(points, sphere, near);
-  if (lanes_in_use == Lanes::kPlain) return plain::sieve_sphere(points, sphere, near);
+  if (lanes_in_use == LaneSet::kAvx512) return avx512::sieve_sphere(points, sphere, near);
+  if (lanes_in_use == LaneSet::kPlain) return plain::sieve_sphere(points, sphere, near);
   return sphere.has_side ? avx2::sieve_sphere<true>(points, sphere, near)
                          : avx2::sieve_sphere<false>(points, sphere, near);
 }
 void sieve_body(const SievePoints& points, const SieveBody& body, SievedPoints& near) {
-  lanes_in_use == Lanes::kPlain ? plain::sieve_body(points, body, near)
-                                : avx2::sieve_body(points, body, near);
+  lanes_in_use == LaneSet::kPlain ? plain::sieve_body(points, body, near)
+                                  : avx2::sieve_body(points, body, near);
 }
 std::size_t sieve_count(const SievedPoints& near, float distance2) {
-  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_count(near, distance2);
-  return lanes_in_use == Lanes::kAvx2 ? avx2::sieve_count(near, distance2)
-                                      : plain::sieve_count(near, distance2);
+  if (lanes_in_use == LaneSet::kAvx512) return avx512::sieve_count(near, distance2);
+  return lanes_in_use == LaneSet::kAvx2 ? avx2::sieve_count(near, distance2)
+                                        : plain::sieve_count(near, distance2);
 }
 void sieve_further(SievedPoints& near, float distance2) {
-  if (lanes_in_use == Lanes::kAvx512) return avx512::sieve_further(near, distance2);
-  lanes_in_use == Lanes::kAvx2 ? avx2::sieve_further(near, distance2) : plain::sieve_further(near, distance2);
+  if (lanes_in_use == LaneSet::kAvx512) return avx512::sieve_further(near, distance2);
+  lanes_in_use == LaneSet::kAvx2 ? avx2::sieve_further(near, distance2)
+                                 : plain::sieve_further(near, distance2);
 }
 float sieve_least_sum(const SievePoints& points, const std::array<float, 3>& middle, const float* values,
                       std::size_t count) {
-  return lanes_in_use == Lanes::kPlain ? plain::sieve_least_sum(points, middle, values, count)
-                                       : avx2::sieve_least_sum(points, middle, values, count);
+  return lanes_in_use == LaneSet::kPlain ? plain::sieve_least_sum(points, middle, values, count)
+                                         : avx2::sieve_least_sum(points, middle, values, count);
 }
 
 }  // namespace ray

@@ -1,8 +1,9 @@
 #pragma once
 /// Of the loops of point_sieve.h, those that gain by sixteen lanes.
 
-#include "lanes.h"
 #include "point_sieve.h"
+
+#include <raycloud/core/lanes.h>
 
 #ifdef RAY_HAS_LANES
 namespace ray::avx512 {

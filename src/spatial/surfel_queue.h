@@ -7,11 +7,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <span>
 
 namespace ray {
 
-/// Collects the moments of neighbours, and makes surfels of four at a time. A surfel is the same to the last
-/// bit, whichever others it is made with.
+/// Collects the moments of neighbours, and makes surfels of four or eight at a time. A surfel is the same to
+/// the last bit, whichever others it is made with.
 class SurfelQueue {
  public:
   static constexpr std::size_t kMost = 16;
@@ -28,6 +29,8 @@ class SurfelQueue {
     Eigen::Vector3d to_sensor;
     Surfel* surfel;
   };
+  template <class Value>
+  static void make_some(std::span<const Waiting> some);
   static void finish(Surfel& surfel, const Eigen::Vector3d& to_sensor);
 
   const PointTree& tree_;

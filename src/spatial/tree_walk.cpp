@@ -1,6 +1,6 @@
 #include "tree_walk.h"
 
-#include "lanes.h"
+#include <raycloud/core/lanes.h>
 
 #include <algorithm>
 #include <bit>
@@ -77,7 +77,25 @@ struct TreeWalk::Avx512 {
                         _mm512_castsi512_si256(_mm512_maskz_compress_epi32(some, places)));
     walk.count_ += static_cast<std::size_t>(_mm_popcnt_u32(some));
   }
-  RAY_AVX512 static void add_near(TreeWalk& walk, const Leaf& leaf) {
+  /// Coordinate `axis` of the directions of eight, which lie one after the other.
+  RAY_AVX512 static __m512d coordinate(__m512i directions, int axis) {
+    const __m512i first = _mm512_castsi128_si512(_mm_setr_epi16(0, 3, 6, 9, 12, 15, 18, 21));
+    const __m512i numbers = _mm512_add_epi16(first, _mm512_set1_epi16(static_cast<short>(axis)));
+    const __m128i eight = _mm512_castsi512_si128(_mm512_permutexvar_epi16(numbers, directions));
+    return _mm512_cvtepi32_pd(_mm256_cvtepi16_epi32(eight));
+  }
+  /// As is_of_side, of those of eight that are asked for.
+  RAY_AVX512 static __mmask8 of_side(const Eigen::Vector3d& side, const PackedDirection* eight,
+                                     __mmask8 asked, std::size_t there) {
+    const auto numbers = static_cast<__mmask32>((1U << 3 * std::min(there, kLanes)) - 1);
+    const __m512i directions = _mm512_maskz_loadu_epi16(numbers, eight);
+    const __m512d along =
+        _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(_mm512_set1_pd(side.x()), coordinate(directions, 0)),
+                                    _mm512_mul_pd(_mm512_set1_pd(side.y()), coordinate(directions, 1))),
+                      _mm512_mul_pd(_mm512_set1_pd(side.z()), coordinate(directions, 2)));
+    return _mm512_mask_cmp_pd_mask(asked, along, _mm512_setzero_pd(), _CMP_GE_OQ);
+  }
+  RAY_AVX512 static void add_near(TreeWalk& walk, const Leaf& leaf, const Eigen::Vector3d* side) {
     const PointTree& tree = walk.tree_;
     const __m512d at_x = _mm512_set1_pd(walk.at_[0]), at_y = _mm512_set1_pd(walk.at_[1]),
                   at_z = _mm512_set1_pd(walk.at_[2]), bound = _mm512_set1_pd(walk.bound_);
@@ -93,7 +111,9 @@ struct TreeWalk::Avx512 {
           _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
       const __m512i places = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(at)), lane);
       const auto others = static_cast<__mmask8>(_mm512_cmpneq_epi32_mask(places, self) & some);
-      append(walk, _mm512_mask_cmp_pd_mask(others, distance2, bound, _CMP_LE_OQ), distance2, places);
+      __mmask8 near = _mm512_mask_cmp_pd_mask(others, distance2, bound, _CMP_LE_OQ);
+      if (side != nullptr && near != 0) near = of_side(*side, &tree.to_sensor_[at], near, leaf.count - i);
+      append(walk, near, distance2, places);
     }
   }
   RAY_AVX512 static std::size_t count_within(const TreeWalk& walk, double distance2) {
@@ -122,7 +142,7 @@ struct TreeWalk::Avx512 {
 /// How many of the points found are no further than that.
 inline std::size_t TreeWalk::count_within(double distance2) {
 #ifdef RAY_HAS_LANES
-  if (lanes_in_use == Lanes::kAvx512) return Avx512::count_within(*this, distance2);
+  if (lanes_in_use == LaneSet::kAvx512) return Avx512::count_within(*this, distance2);
 #endif
 #ifdef __SSE2__
   distance2_[count_] = PointTree::kInfinity;
@@ -168,10 +188,10 @@ inline std::uint32_t TreeWalk::near_points(const Leaf& leaf, double* distance2) 
   return near;
 }
 
-/// Adds the points of a leaf that are no further than the bound.
-inline void TreeWalk::add_near(const Leaf& leaf) {
+/// Adds the points of a leaf that are no further than the bound, and of the side.
+inline void TreeWalk::add_near(const Leaf& leaf, const Eigen::Vector3d* side) {
 #ifdef RAY_HAS_LANES
-  if (lanes_in_use == Lanes::kAvx512) return Avx512::add_near(*this, leaf);
+  if (lanes_in_use == LaneSet::kAvx512) return Avx512::add_near(*this, leaf, side);
 #endif
   alignas(16) std::array<double, PointTree::kLeafPoints> distance2;
   std::uint32_t near = near_points(leaf, distance2.data());
@@ -179,28 +199,20 @@ inline void TreeWalk::add_near(const Leaf& leaf) {
   for (; near != 0; near &= near - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
     distance2_[count_] = distance2[i];
-    place_[count_++] = leaf.first + i;
+    place_[count_] = leaf.first + i;
+    count_ += is_of_side(side, tree_.to_sensor_[leaf.first + i]) ? 1 : 0;
   }
 }
 
 /// Adds the points of a leaf that may be among the nearest, in no order.
 inline void TreeWalk::scan(const Leaf& leaf, const Eigen::Vector3d* side) {
-  std::size_t count = count_;
-  add_near(leaf);
-  if (side != nullptr) {
-    for (std::size_t i = count; i < count_; ++i) {
-      distance2_[count] = distance2_[i];
-      place_[count] = place_[i];
-      count += is_of_side(side, tree_.to_sensor_[place_[i]]) ? 1 : 0;
-    }
-    count_ = count;
-  }
+  add_near(leaf, side);
   if (count_ > kRoom - PointTree::kLeafPoints) keep_nearest();
 }
 
 inline void TreeWalk::drop_further(double distance2) {
 #ifdef RAY_HAS_LANES
-  if (lanes_in_use == Lanes::kAvx512) return Avx512::drop_further(*this, distance2);
+  if (lanes_in_use == LaneSet::kAvx512) return Avx512::drop_further(*this, distance2);
 #endif
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -52,7 +52,7 @@ class TreeWalk {
   void keep_nearest();
   void sort_nearest();
   [[nodiscard]] std::uint32_t near_points(const Leaf& leaf, double* distance2) const;
-  void add_near(const Leaf& leaf);
+  void add_near(const Leaf& leaf, const Eigen::Vector3d* side);
   void scan(const Leaf& leaf, const Eigen::Vector3d* side);
   void drop_further(double distance2);
   struct Avx512;

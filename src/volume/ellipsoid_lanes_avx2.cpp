@@ -3,11 +3,12 @@
 
 #include "ellipsoid_lanes.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include <raycloud/core/lanes.h>
+
+#ifdef RAY_HAS_LANES
 #include <immintrin.h>
 
 #include <cmath>
-#define RAY_AVX2 [[gnu::target("avx2")]]
 
 namespace ray {
 namespace avx2 {
@@ -107,19 +108,18 @@ RAY_AVX2 CrossedLanes ellipsoids_on_line(const std::array<EightFloats, 3>& centr
   return crossed;
 }
 
-const bool kIsHere = __builtin_cpu_supports("avx2");
-
 }  // namespace
 }  // namespace avx2
 
 std::uint32_t boxes_on_line(const std::array<EightFloats, 3>& min, const std::array<EightFloats, 3>& max,
                             const LineInBoxes& line) {
-  return avx2::kIsHere ? avx2::boxes_on_line(min, max, line) : plain::boxes_on_line(min, max, line);
+  return lanes_in_use != LaneSet::kPlain ? avx2::boxes_on_line(min, max, line)
+                                         : plain::boxes_on_line(min, max, line);
 }
 CrossedLanes ellipsoids_on_line(const std::array<EightFloats, 3>& centre,
                                 const std::array<EightFloats, 6>& shape, const LineAtEllipsoids& line) {
-  return avx2::kIsHere ? avx2::ellipsoids_on_line(centre, shape, line)
-                       : plain::ellipsoids_on_line(centre, shape, line);
+  return lanes_in_use != LaneSet::kPlain ? avx2::ellipsoids_on_line(centre, shape, line)
+                                         : plain::ellipsoids_on_line(centre, shape, line);
 }
 
 }  // namespace ray

@@ -1,7 +1,7 @@
 #pragma once
 /// Loops of all widths, for properties to be true of each.
 
-#include "spatial/lanes.h"
+#include <raycloud/core/lanes.h>
 
 #include <rapidcheck.h>
 
@@ -10,7 +10,7 @@ namespace ray {
 /// As long as it lives, loops take that many lanes, or as many as the processor can.
 class AnyLanes {
  public:
-  AnyLanes() : fewer_(*rc::gen::element(Lanes::kPlain, Lanes::kAvx2, Lanes::kAvx512)) {}
+  AnyLanes() : fewer_(*rc::gen::element(LaneSet::kPlain, LaneSet::kAvx2, LaneSet::kAvx512)) {}
 
  private:
   FewerLanes fewer_;

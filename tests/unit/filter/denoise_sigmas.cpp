@@ -1,5 +1,6 @@
 #include "support/random_cloud.h"
 
+#include <raycloud/core/lanes.h>
 #include <raycloud/core/memory_stream.h>
 #include <raycloud/filter/denoise.h>
 
@@ -157,7 +158,7 @@ TEST(OutsideNeighbours, WiresAndEdgesAreTheSameInAnyBlocks) {
       test::same_bits(without_outliers(cloud, 3.0, {.threads = 3, .memory = 1500000}, 777), expected));
 }
 
-TEST(OutsideNeighbours, SameBytesForAnyThreadsChunksAndMemory) {
+TEST(OutsideNeighbours, SameBytesForAnyThreadsChunksMemoryAndLanes) {
   RayCloud cloud = noisy_floor(20000, 0.05);
   for (std::size_t i = 0; i < cloud.size(); i += 7)
     cloud.ends[i].z() += 0.01 * static_cast<double>(i % 91);
@@ -169,6 +170,10 @@ TEST(OutsideNeighbours, SameBytesForAnyThreadsChunksAndMemory) {
     EXPECT_TRUE(test::same_bits(without_outliers(cloud, 2.0, {.threads = threads}, 7), expected));
   for (const std::size_t memory : {1000000UL, 100000UL})
     EXPECT_TRUE(test::same_bits(without_outliers(cloud, 2.0, {.threads = 2, .memory = memory}), expected));
+  for (const LaneSet most : {LaneSet::kPlain, LaneSet::kAvx2}) {
+    const FewerLanes fewer(most);
+    EXPECT_TRUE(test::same_bits(without_outliers(cloud, 2.0, {}), expected));
+  }
 }
 
 TEST(OutsideNeighbours, AFarOutlierGoesAndOddCloudsStay) {

@@ -1,5 +1,6 @@
 #include "support/random_cloud.h"
 
+#include <raycloud/core/lanes.h>
 #include <raycloud/core/memory_stream.h>
 #include <raycloud/filter/smooth.h>
 
@@ -116,7 +117,7 @@ TEST(SmoothRays, StartsAndTheRestStay) {
   EXPECT_TRUE(test::same_bits(after, cloud));
 }
 
-TEST(SmoothRays, SameBytesForAnyThreadsChunksAndMemory) {
+TEST(SmoothRays, SameBytesForAnyThreadsChunksMemoryAndLanes) {
   const RayCloud cloud = scan(8000, 0.02, [](const RandomStream& random, std::size_t i) {
     const double x = 30.0 * random.uniform(i, 0);
     return Sample{{x, 2.0 * random.uniform(i, 1), i % 3 == 0 ? 0.06 : 0.3 * std::sin(x)},
@@ -127,6 +128,10 @@ TEST(SmoothRays, SameBytesForAnyThreadsChunksAndMemory) {
     EXPECT_TRUE(test::same_bits(smoothed(cloud, {.threads = threads}, 7), expected));
   for (const std::size_t memory : {1000000UL, 100000UL})
     EXPECT_TRUE(test::same_bits(smoothed(cloud, {.threads = 2, .memory = memory}), expected));
+  for (const LaneSet most : {LaneSet::kPlain, LaneSet::kAvx2}) {
+    const FewerLanes fewer(most);
+    EXPECT_TRUE(test::same_bits(smoothed(cloud, {}), expected));
+  }
 }
 
 TEST(SmoothRays, OddCloudsStayAsTheyAre) {

@@ -1,6 +1,6 @@
 #include "spatial/point_sieve.h"
 
-#include "spatial/lanes.h"
+#include <raycloud/core/lanes.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -26,7 +26,7 @@ std::vector<std::pair<float, std::uint32_t>> listed(const SievedPoints& near) {
 
 /// What a processor with wide lanes does is what the plain loops do, in the same order.
 RC_GTEST_PROP(PointSieve, LanesDoWhatPlainLoopsDo, ()) {
-  const FewerLanes fewer(*rc::gen::element(Lanes::kAvx2, Lanes::kAvx512));
+  const FewerLanes fewer(*rc::gen::element(LaneSet::kAvx2, LaneSet::kAvx512));
   const auto wide = std::make_unique<SievePoints>(), plain = std::make_unique<SievePoints>();
   std::array<std::vector<double>, 3> columns;
   const auto leaves = *rc::gen::inRange<std::uint32_t>(1, 8);

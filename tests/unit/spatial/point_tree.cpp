@@ -162,6 +162,34 @@ RC_GTEST_PROP(PointTree, NeighboursAreThoseOfBruteForceInAnyOrderOfAsking, ()) {
   }
 }
 
+/// Fewer than wanted or more, by what lies around a leaf or by walking; single precision tells them or not.
+RC_GTEST_PROP(PointTree, PlacesFacingASideAreThoseOfBruteForce, ()) {
+  const AnyLanes lanes;
+  const auto arrangement = kArrangements[*rc::gen::inRange<std::size_t>(0, kArrangements.size())];
+  const auto wanted = *rc::gen::element<std::size_t>(1, 5, 16, 63);
+  const double reach = *rc::gen::element(1e9, 1.0, 0.3, 0.1, 0.05);
+  const bool looks_around = *rc::gen::arbitrary<bool>();
+  const std::vector<SeenPoint> points = arranged(arrangement, 400, *rc::gen::arbitrary<std::uint64_t>());
+  const PointTree tree({}, points);
+  NeighbourSearch search(tree);
+  const Eigen::Vector3d side(0.3, -0.5, 0.8);
+  for (std::size_t place = 0; place < tree.size(); ++place) {
+    if (looks_around && place == search.leaf_of(place).begin) search.look_around(place, reach);
+    std::vector<std::uint32_t> found, expected;
+    for (const std::uint32_t other : search.places_facing(place, wanted, reach, side))
+      found.push_back(tree.index(other));
+    const Found nearest = brute_force(points, tree.index(place), wanted, reach, [&](std::size_t j) {
+      const PackedDirection& d = points[j].to_sensor;
+      return side.x() * d[0] + side.y() * d[1] + side.z() * d[2] >= 0.0;
+    });
+    for (const auto& [distance2, index] : nearest)
+      expected.push_back(index);
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    RC_ASSERT(found == expected);
+  }
+}
+
 /// Large enough for several buckets; queries in any order.
 TEST(PointTree, NeighboursOfManyPointsAreThoseOfBruteForce) {
   for (const Arrangement arrangement : kArrangements) {

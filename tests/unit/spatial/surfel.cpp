@@ -119,10 +119,11 @@ class SurfelOracle {
       }
       const double count = surfel.count;
       const Eigen::Vector3d s = sum.cast<double>();
-      surfel.centroid += s / (count * scale);
+      const double per_count = 1.0 / count, per_mean = per_count / scale;
+      surfel.centroid += s * per_mean;
       const Eigen::Matrix3d outer = s * s.transpose();
       const SymmetricEigen eigen =
-          symmetric_eigen((products.cast<double>() - outer / count) / (count * scale * scale));
+          symmetric_eigen((products.cast<double>() - outer * per_count) * (per_mean / scale));
       surfel.variances = eigen.values.cwiseMax(0.0);
       surfel.normal = eigen.vectors.col(0);
       surfel.axis = eigen.vectors.col(2);

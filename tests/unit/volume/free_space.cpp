@@ -1,6 +1,7 @@
 /// Free space against looking at all rays and all ellipsoids.
 
 #include "all_pairs.h"
+#include "support/any_lanes.h"
 #include "volume/cloud_ellipsoids.h"
 #include "volume/ellipsoid_lanes.h"
 
@@ -124,6 +125,7 @@ TEST(FreeSpace, countsWhatAllPairsCount) {
 }
 
 RC_GTEST_PROP(FreeSpace, countsWhatAllPairsCountForAnyNumbers, (std::uint64_t seed)) {
+  const AnyLanes lanes;
   const auto ellipsoids = *rc::gen::inRange<std::size_t>(0, 80);
   const auto rays = *rc::gen::inRange<std::size_t>(0, 80);
   const Scene scene = random_scene(seed, ellipsoids, rays, 0.0);
