@@ -2,6 +2,7 @@
 
 #include "noisy_plane.h"
 
+#include <raycloud/exec/fresh_memory.h>
 #include <raycloud/exec/parallel.h>
 
 #include <algorithm>
@@ -30,13 +31,13 @@ class BlockJudge {
         reach_(reach),
         spacing_(reach / kReachSpacings),
         sigmas_(for_estimated_sigma(sigmas)),
-        planes_(tree_.size()),
-        verdicts_(tree_.size()),
-        open_(tree_.size(), Open::kNothing) {}
+        planes_(touched_vector<NoisyPlane>(context, tree_.size())),
+        verdicts_(touched_vector<Verdict>(context, tree_.size())),
+        open_(touched_vector<Open>(context, tree_.size())) {}
 
   std::vector<Verdict> take_verdicts() {
     // The larger the range, the fewer have neighbours beyond.
-    const std::size_t places = std::clamp<std::size_t>(tree_.size() / 64, 4096, 16384);
+    const std::size_t places = std::clamp<std::size_t>(tree_.size() / 64, 4096, 65536);
     parallel_for(context_, tree_.size(), places, [&](std::size_t begin, std::size_t end) {
       NeighbourSearch search(tree_);
       judge_range(search, begin, end);

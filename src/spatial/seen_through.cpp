@@ -1,3 +1,4 @@
+#include <raycloud/core/lanes.h>
 #include <raycloud/spatial/seen_through.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 constexpr double kBrickWidth = 32.0;           // radii
 constexpr std::int64_t kMostBricks = 1 << 18;  // of an outlier's ray, the beginning will do
 constexpr std::size_t kFew = 32;               // points of a cell that need no groups
-constexpr std::size_t kGroup = 8;              // points, at most
+constexpr std::size_t kGroup = 8;              // points, at most: those of an Eight
 constexpr double kRounded = 1.0 + 1e-9;
 
 std::int64_t brick_at(double value, double width) {
@@ -46,12 +47,17 @@ float with_room(float reach) {
   return 1.001F * reach * reach + 0.01F;
 }
 
-std::uint32_t bits_below_zero(const Eigen::Array4f& values) {
+using EightFloats [[gnu::vector_size(32), gnu::may_alias]] = float;
+
+/// Whose sign is that of what is below zero.
+[[gnu::always_inline]] inline std::uint32_t bits_below_zero(const EightFloats& values) {
 #ifdef __SSE2__
-  return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_load_ps(values.data())));
+  const __m128 low{values[0], values[1], values[2], values[3]},
+      high{values[4], values[5], values[6], values[7]};
+  return static_cast<std::uint32_t>(_mm_movemask_ps(low) | _mm_movemask_ps(high) << 4);
 #else
   std::uint32_t bits = 0;
-  for (Eigen::Index i = 0; i < 4; ++i)
+  for (std::uint32_t i = 0; i < 8; ++i)
     bits |= std::uint32_t{std::signbit(values[i])} << i;
   return bits;
 #endif
@@ -158,7 +164,7 @@ void SeenThrough::list_points() {
 
 /// Of a cell.
 void SeenThrough::add_list(std::span<Listed> listed) {
-  const auto place = [&] { return static_cast<std::uint32_t>(fours_.size()); };
+  const auto place = [&] { return static_cast<std::uint32_t>(eights_.size()); };
   const std::uint32_t begin = place();
   if (listed.size() <= kFew) {
     add_points(listed);
@@ -169,7 +175,7 @@ void SeenThrough::add_list(std::span<Listed> listed) {
     return place_in_brick(a.offset) < place_in_brick(b.offset);
   });
   const std::size_t groups = (listed.size() + kGroup - 1) / kGroup;
-  fours_.resize(begin + (groups + 3) / 4);
+  eights_.resize(begin + (groups + 7) / 8);
   lists_.push_back({begin, place(), true});
   for (std::size_t i = 0; i < groups; ++i) {
     const auto group = listed.subspan(i * kGroup, std::min(kGroup, listed.size() - i * kGroup));
@@ -179,17 +185,15 @@ void SeenThrough::add_list(std::span<Listed> listed) {
     float reach = 0.0F;
     for (const Listed& one : group)
       reach = std::max(reach, (one.offset - middle).norm() + 1.0F);
-    fours_[begin + i / 4].set(i % 4, middle, with_room(reach), place());
-    const std::size_t end = fours_.size() + kGroup / 4;
+    eights_[begin + i / 8].set(i % 8, middle, with_room(reach), place());
     add_points(group);
-    fours_.resize(end);
   }
 }
 
 void SeenThrough::add_points(std::span<const Listed> listed) {
   for (std::size_t i = 0; i < listed.size(); ++i) {
-    if (i % 4 == 0) fours_.emplace_back();
-    fours_.back().set(i % 4, listed[i].offset, with_room(1.0F), listed[i].point);
+    if (i % 8 == 0) eights_.emplace_back();
+    eights_.back().set(i % 8, listed[i].offset, with_room(1.0F), listed[i].point);
   }
 }
 
@@ -239,41 +243,63 @@ void SeenThrough::add(const Eigen::Vector3d& start, const Eigen::Vector3d& end, 
   }
 }
 
-/// Calls `visit(which)` for all of the balls that the line meets, and few others.
-template <class Visit>
-void SeenThrough::each_near(std::uint32_t begin, std::uint32_t end, const Way& way,
-                            const Visit& visit) const {
-  const Eigen::Array4f from_x = Eigen::Array4f::Constant(way.from.x()),
-                       from_y = Eigen::Array4f::Constant(way.from.y()),
-                       from_z = Eigen::Array4f::Constant(way.from.z()),
-                       along_x = Eigen::Array4f::Constant(way.along.x()),
-                       along_y = Eigen::Array4f::Constant(way.along.y()),
-                       along_z = Eigen::Array4f::Constant(way.along.z());
-  for (const Four& four : std::span(fours_).subspan(begin, end - begin)) {
-    const Eigen::Array4f x = four.x - from_x, y = four.y - from_y, z = four.z - from_z;
-    const Eigen::Array4f nearest = x * along_x + y * along_y + z * along_z;
-    for (std::uint32_t met = bits_below_zero(x * x + y * y + z * z - nearest * nearest - four.reach2);
-         met != 0; met &= met - 1)
-      visit(four.which[static_cast<std::size_t>(std::countr_zero(met))]);
+/// The loops of a brick, for processors with and without AVX2.
+struct SeenThrough::Kernels {
+  [[gnu::always_inline]] static EightFloats lanes(const Eight::Floats& values) {
+    return reinterpret_cast<const EightFloats&>(values);
   }
-}
+
+  /// Calls `visit(which)` for all of the balls that the line meets, and few others.
+  template <class Visit>
+  [[gnu::always_inline]] static void each_near(std::span<const Eight> eights, const Way& way,
+                                               const Visit& visit) {
+    const float along_x = way.along.x(), along_y = way.along.y(), along_z = way.along.z();
+    for (const Eight& eight : eights) {
+      const EightFloats x = lanes(eight.x) - way.from.x(), y = lanes(eight.y) - way.from.y(),
+                        z = lanes(eight.z) - way.from.z();
+      const EightFloats nearest = x * along_x + y * along_y + z * along_z;
+      for (std::uint32_t met =
+               bits_below_zero(x * x + y * y + z * z - nearest * nearest - lanes(eight.reach2));
+           met != 0; met &= met - 1)
+        visit(eight.which[static_cast<std::size_t>(std::countr_zero(met))]);
+    }
+  }
+
+  [[gnu::always_inline]] static void visit(SeenThrough& seen, std::size_t cell, const Line& line,
+                                           const Way& way) {
+    const auto visit_point = [&](std::uint32_t point) {
+      const Eigen::Vector3d offset = seen.points_[point] - line.start;
+      const double nearest = offset.dot(line.direction);
+      if (nearest >= way.in && nearest < way.out &&
+          offset.squaredNorm() - nearest * nearest < seen.radius_ * seen.radius_)
+        std::atomic_ref(seen.passes_[point]).fetch_add(1, std::memory_order_relaxed);
+    };
+    const List& list = seen.lists_[seen.rank_of(cell)];
+    const std::span<const Eight> eights = std::span<const Eight>(seen.eights_);
+    const std::span<const Eight> of_list = eights.subspan(list.begin, list.end - list.begin);
+    if (list.is_of_groups)
+      each_near(of_list, way,
+                [&](std::uint32_t group) { each_near(eights.subspan(group, 1), way, visit_point); });
+    else
+      each_near(of_list, way, visit_point);
+  }
+  static void visit_plain(SeenThrough& seen, std::size_t cell, const Line& line, const Way& way) {
+    visit(seen, cell, line, way);
+  }
+#ifdef RAY_HAS_LANES
+  RAY_AVX2 static void visit_avx2(SeenThrough& seen, std::size_t cell, const Line& line, const Way& way) {
+    visit(seen, cell, line, way);
+  }
+#endif
+};
 
 /// Counts for the points of a cell to which the line is nearest on its way through the brick, so that each
 /// ray counts once.
 void SeenThrough::visit(std::size_t cell, const Line& line, const Way& way) {
-  const auto visit_point = [&](std::uint32_t point) {
-    const Eigen::Vector3d offset = points_[point] - line.start;
-    const double nearest = offset.dot(line.direction);
-    if (nearest >= way.in && nearest < way.out &&
-        offset.squaredNorm() - nearest * nearest < radius_ * radius_)
-      std::atomic_ref(passes_[point]).fetch_add(1, std::memory_order_relaxed);
-  };
-  const List& list = lists_[rank_of(cell)];
-  if (list.is_of_groups)
-    each_near(list.begin, list.end, way,
-              [&](std::uint32_t first) { each_near(first, first + kGroup / 4, way, visit_point); });
-  else
-    each_near(list.begin, list.end, way, visit_point);
+#ifdef RAY_HAS_LANES
+  if (lanes_in_use != LaneSet::kPlain) return Kernels::visit_avx2(*this, cell, line, way);
+#endif
+  Kernels::visit_plain(*this, cell, line, way);
 }
 
 }  // namespace ray

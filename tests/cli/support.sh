@@ -91,8 +91,9 @@ kill_once() {
   until compgen -G "$pattern" >/dev/null; do
     kill -0 "$process" 2>/dev/null || { echo "ended before it could be killed: $*" >&2; return 1; }
   done
-  kill -KILL "$process"
-  wait "$process" 2>/dev/null || true
+  kill -KILL "$process" 2>/dev/null || true
+  wait "$process" 2>/dev/null
+  [ $? = 137 ] || { echo "ended before it could be killed: $*" >&2; return 1; }
 }
 
 # The commands there are, by name.

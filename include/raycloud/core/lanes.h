@@ -1,11 +1,14 @@
 #pragma once
-/// How many numbers inner loops take at once: as many as the processor can, with the same result.
+/// How many numbers inner loops take at once: as many as the processor can, with the same bits. Functions for
+/// more than every processor has are marked RAY_AVX2 or RAY_AVX512, and called where `lanes_in_use` says so;
+/// wide registers are handed to them by reference.
 
 #include <algorithm>
 #include <cstdint>
 
 namespace ray {
 
+/// In ascending order: what compilers make of plain loops, eight and sixteen floats.
 enum class LaneSet : std::uint8_t { kPlain, kAvx2, kAvx512 };
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -14,6 +17,7 @@ enum class LaneSet : std::uint8_t { kPlain, kAvx2, kAvx512 };
 #define RAY_AVX512 [[gnu::target("avx512f,avx512dq,avx512bw,avx2,popcnt")]]
 #endif
 
+/// That this processor has.
 inline LaneSet widest_lanes() {
 #ifdef RAY_HAS_LANES
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("popcnt")) return LaneSet::kPlain;
