@@ -60,6 +60,10 @@ void pull_together(const Eigen::Vector3d& arm, const std::array<Eigen::Vector3d,
   add_residual(0.5 * (off[0] + off[1]), weight, equation);
 }
 
+bool is_flat(const Patch& patch, const FineRule& rule) {
+  return patch.is_flat() || patch.is_strip(rule.noise);
+}
+
 Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference, const FineFit& at,
                      const FineRule& rule) {
   constexpr double kLeastSigma = 0.003;  // m; means are no truer than that, however many points
@@ -67,7 +71,7 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
   const Eigen::Matrix3d& rotation = at.pose.rotation;
   for (const Patch& patch : patches) {
     const Eigen::Vector3d place = at.pose * patch.mean;
-    const Patch* other = counterpart_of(patch, reference, place, rotation);
+    const Patch* other = counterpart_of(patch, reference, place, rotation, rule);
     if (other == nullptr) continue;
     const Eigen::Vector3d apart = other->mean - place, arm = place - at.centre;
     const auto weight_of = [&](double off, double variances) {
@@ -77,7 +81,7 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
       return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) * kLeastSigma * kLeastSigma / sigma2 : 0.0;
     };
     const auto variance_of_mean = [](const Patch& one, int i) { return one.variances[i] / one.count; };
-    if (patch.is_flat()) {
+    if (is_flat(patch, rule)) {
       const std::array<Eigen::Vector3d, 2> normals{other->normal, rotation * patch.normal};
       const std::array<double, 2> off{normals[0].dot(apart), normals[1].dot(apart)};
       const double weight =
@@ -152,18 +156,18 @@ FineFit fit(std::span<const Patch> patches, const Pose& start, const FineRule& r
 }  // namespace
 
 const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, const Eigen::Vector3d& place,
-                            const Eigen::Matrix3d& rotation) {
+                            const Eigen::Matrix3d& rotation, const FineRule& rule) {
   constexpr double kAligned = 0.8;  // cosine
-  const bool is_flat = patch.is_flat(), is_thin = patch.is_thin();
-  if (!is_flat && !is_thin) return nullptr;
-  const Eigen::Vector3d heading = rotation * (is_flat ? patch.normal : patch.along);
+  const bool flat = is_flat(patch, rule), thin = patch.is_thin();
+  if (!flat && !thin) return nullptr;
+  const Eigen::Vector3d heading = rotation * (flat ? patch.normal : patch.along);
   const Patch* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   reference.each_near(place, [&](const Patch& other) {
     const double distance2 = (other.mean - place).squaredNorm();
     if (distance2 >= least) return;
-    const bool fits = is_flat ? other.is_flat() && other.normal.dot(heading) > kAligned
-                              : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
+    const bool fits = flat ? is_flat(other, rule) && other.normal.dot(heading) > kAligned
+                           : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
     if (fits) least = distance2, nearest = &other;
   });
   return nearest;
@@ -177,14 +181,23 @@ FineFit fit_patches(std::span<const Patch> patches, const PatchLevel& reference,
 
 FineFit fit_patches(const Context& context, std::span<const Patch> patches, const PatchLevel& reference,
                     const Pose& start, const FineRule& rule) {
+  const FineLevel level{patches, reference, rule};
+  return fit_levels(context, {&level, 1}, start);
+}
+
+FineFit fit_levels(const Context& context, std::span<const FineLevel> levels, const Pose& start) {
   constexpr std::size_t kGrain = 512;
-  return fit(patches, start, rule, [&](const FineFit& at) {
-    return parallel_reduce(
-        context, patches.size(), kGrain, Equation(),
-        [&](std::size_t begin, std::size_t end) {
-          return equation_of(patches.subspan(begin, end - begin), reference, at, rule);
-        },
-        sum_of);
+  return fit(levels.front().patches, start, levels.front().rule, [&](const FineFit& at) {
+    Equation all;
+    for (const FineLevel& level : levels)
+      all = sum_of(all, parallel_reduce(
+                            context, level.patches.size(), kGrain, Equation(),
+                            [&](std::size_t begin, std::size_t end) {
+                              return equation_of(level.patches.subspan(begin, end - begin), level.reference,
+                                                 at, level.rule);
+                            },
+                            sum_of));
+    return all;
   });
 }
 

@@ -22,6 +22,14 @@ struct FineRule {
   bool upright = false;  ///< turn about the vertical only
   /// Of the largest information: what is held much less than that hardly moves.
   double damping = 3e-4;
+  double noise = 0.0;  ///< m²: strips of planes that vary less across themselves count as flat
+};
+
+/// Patches, those of the reference, and the rule for them.
+struct FineLevel {
+  std::span<const Patch> patches;
+  const PatchLevel& reference;
+  FineRule rule;
 };
 
 struct FineFit {
@@ -43,10 +51,15 @@ struct FineFit {
 [[nodiscard]] FineFit fit_patches(const Context& context, std::span<const Patch> patches,
                                   const PatchLevel& reference, const Pose& start, const FineRule& rule);
 
+/// As above, of patches of several widths together; steps are those of the first rule.
+[[nodiscard]] FineFit fit_levels(const Context& context, std::span<const FineLevel> levels,
+                                 const Pose& start);
+
 /// The nearest patch of the same kind whose surface heads the same way, or none, for a patch that comes to
 /// lie at `place`.
 [[nodiscard]] const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference,
-                                          const Eigen::Vector3d& place, const Eigen::Matrix3d& rotation);
+                                          const Eigen::Vector3d& place, const Eigen::Matrix3d& rotation,
+                                          const FineRule& rule = {});
 
 /// An even choice of at most so many.
 [[nodiscard]] std::vector<Patch> some_of(const std::vector<Patch>& patches, std::size_t most);

@@ -60,6 +60,10 @@ struct Patch {
   /// sides, each a √12th of the side.
   [[nodiscard]] double area() const { return 12.0 * std::sqrt(variances[1] * variances[2]); }
   [[nodiscard]] bool is_flat() const { return variances[0] < 0.1 * variances[1] && !is_thin(); }
+  /// A plane, or a strip of one so narrow that noise of up to that variance (m²) makes it look round.
+  [[nodiscard]] bool is_strip(double noise) const {
+    return variances[0] < noise && variances[0] < 0.2 * variances[1] && !is_thin();
+  }
   [[nodiscard]] bool is_thin() const { return variances[1] < 0.05 * variances[2]; }
   [[nodiscard]] bool is_upright() const { return std::abs(normal.z()) < 0.35; }
   [[nodiscard]] bool is_level() const { return std::abs(normal.z()) > 0.9; }
@@ -74,10 +78,12 @@ class PatchLevel {
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] const std::vector<Patch>& patches() const { return patches_; }
+  /// No surface that noise alone makes rough varies as much across itself, m².
+  [[nodiscard]] double thickest() const { return 2.5 * noise_; }
   /// A flat patch of many points that is no thicker than noise makes it: no corner, no foliage.
   [[nodiscard]] bool is_clean(const Patch& patch) const {
-    constexpr double kLeastPoints = 10.0, kThick = 2.5;
-    return patch.count >= kLeastPoints && patch.is_flat() && patch.variances[0] < kThick * noise_;
+    constexpr double kLeastPoints = 10.0;
+    return patch.count >= kLeastPoints && patch.is_flat() && patch.variances[0] < thickest();
   }
 
   /// Calls `visit(patch)` for all in the eight cubes nearest to a point, so at least for those within half a
