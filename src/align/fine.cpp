@@ -60,10 +60,6 @@ void pull_together(const Eigen::Vector3d& arm, const std::array<Eigen::Vector3d,
   add_residual(0.5 * (off[0] + off[1]), weight, equation);
 }
 
-bool is_flat(const Patch& patch, const FineRule& rule) {
-  return patch.is_flat() || patch.is_strip(rule.noise);
-}
-
 Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference, const FineFit& at,
                      const FineRule& rule) {
   constexpr double kLeastSigma = 0.003;  // m; means are no truer than that, however many points
@@ -81,7 +77,7 @@ Equation equation_of(std::span<const Patch> patches, const PatchLevel& reference
       return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) * kLeastSigma * kLeastSigma / sigma2 : 0.0;
     };
     const auto variance_of_mean = [](const Patch& one, int i) { return one.variances[i] / one.count; };
-    if (is_flat(patch, rule)) {
+    if (patch.is_flat(rule.flat)) {
       const std::array<Eigen::Vector3d, 2> normals{other->normal, rotation * patch.normal};
       const std::array<double, 2> off{normals[0].dot(apart), normals[1].dot(apart)};
       const double weight =
@@ -158,7 +154,7 @@ FineFit fit(std::span<const Patch> patches, const Pose& start, const FineRule& r
 const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, const Eigen::Vector3d& place,
                             const Eigen::Matrix3d& rotation, const FineRule& rule) {
   constexpr double kAligned = 0.8;  // cosine
-  const bool flat = is_flat(patch, rule), thin = patch.is_thin();
+  const bool flat = patch.is_flat(rule.flat), thin = patch.is_thin();
   if (!flat && !thin) return nullptr;
   const Eigen::Vector3d heading = rotation * (flat ? patch.normal : patch.along);
   const Patch* nearest = nullptr;
@@ -166,7 +162,7 @@ const Patch* counterpart_of(const Patch& patch, const PatchLevel& reference, con
   reference.each_near(place, [&](const Patch& other) {
     const double distance2 = (other.mean - place).squaredNorm();
     if (distance2 >= least) return;
-    const bool fits = flat ? is_flat(other, rule) && other.normal.dot(heading) > kAligned
+    const bool fits = flat ? other.is_flat(rule.flat) && other.normal.dot(heading) > kAligned
                            : other.is_thin() && std::abs(other.along.dot(heading)) > kAligned;
     if (fits) least = distance2, nearest = &other;
   });

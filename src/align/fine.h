@@ -22,7 +22,7 @@ struct FineRule {
   bool upright = false;  ///< turn about the vertical only
   /// Of the largest information: what is held much less than that hardly moves.
   double damping = 3e-4;
-  double noise = 0.0;  ///< m²: strips of planes that vary less across themselves count as flat
+  double flat = 0.1;  ///< a flat patch has at most that share of its next variance across itself
 };
 
 /// Patches, those of the reference, and the rule for them.

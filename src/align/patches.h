@@ -59,10 +59,8 @@ struct Patch {
   /// m², of a flat one: points that fill a rectangle have the product of the standard deviations of its
   /// sides, each a √12th of the side.
   [[nodiscard]] double area() const { return 12.0 * std::sqrt(variances[1] * variances[2]); }
-  [[nodiscard]] bool is_flat() const { return variances[0] < 0.1 * variances[1] && !is_thin(); }
-  /// A plane, or a strip of one so narrow that noise of up to that variance (m²) makes it look round.
-  [[nodiscard]] bool is_strip(double noise) const {
-    return variances[0] < noise && variances[0] < 0.2 * variances[1] && !is_thin();
+  [[nodiscard]] bool is_flat(double most = 0.1) const {
+    return variances[0] < most * variances[1] && !is_thin();
   }
   [[nodiscard]] bool is_thin() const { return variances[1] < 0.05 * variances[2]; }
   [[nodiscard]] bool is_upright() const { return std::abs(normal.z()) < 0.35; }
@@ -78,12 +76,10 @@ class PatchLevel {
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] const std::vector<Patch>& patches() const { return patches_; }
-  /// No surface that noise alone makes rough varies as much across itself, m².
-  [[nodiscard]] double thickest() const { return 2.5 * noise_; }
   /// A flat patch of many points that is no thicker than noise makes it: no corner, no foliage.
   [[nodiscard]] bool is_clean(const Patch& patch) const {
-    constexpr double kLeastPoints = 10.0;
-    return patch.count >= kLeastPoints && patch.is_flat() && patch.variances[0] < thickest();
+    constexpr double kLeastPoints = 10.0, kThick = 2.5;
+    return patch.count >= kLeastPoints && patch.is_flat() && patch.variances[0] < kThick * noise_;
   }
 
   /// Calls `visit(patch)` for all in the eight cubes nearest to a point, so at least for those within half a

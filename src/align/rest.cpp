@@ -5,7 +5,6 @@
 #include <raycloud/spatial/symmetric_eigen.h>
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -29,29 +28,25 @@ FineFit last_fit(const Context& context, const Known& cloud, const Known& refere
   constexpr double kShare = 0.5;                // of the patches, for the narrow ones to count
   constexpr double kGate = 0.25, kFirst = 0.5;  // widths
   const double width = reference.fine.width();
-  const auto wide = [&](double gate, double noise, const Pose& from) {
+  const auto wide = [&](double gate, double flat, const Pose& from) {
     return fit_patches(context, cloud.fine.patches(), reference.fine, from,
-                       {.gate = gate * width, .noise = noise});
+                       {.gate = gate * width, .flat = flat});
   };
   if (reference.narrow.width() >= kWideEnough) {
-    const FineFit fit = wide(kGate, 0.0, start);
+    const FineFit fit = wide(kGate, FineRule().flat, start);
     const FineFit narrow = fit_patches(context, cloud.narrow.patches(), reference.narrow, fit.pose,
                                        {.gate = kGate * reference.narrow.width()});
     return narrow.count < kShare * fit.count ? fit : narrow;
   }
-  const auto noise_of = [](const PatchLevel& one, const PatchLevel& other) {
-    return std::max(one.thickest(), other.thickest());
-  };
-  const double noise = noise_of(cloud.fine, reference.fine),
-               narrow_noise = noise_of(cloud.narrow, reference.narrow);
+  constexpr double kStrip = 0.2;  // of the variance along: what noise leaves flat of a strip
   const auto both = [&](double gate, const Pose& from) {
+    const FineRule rule{.gate = gate * width, .flat = kStrip};
     const std::array<FineLevel, 2> levels{
-        {{cloud.fine.patches(), reference.fine, {.gate = gate * width, .noise = noise}},
-         {cloud.narrow.patches(), reference.narrow, {.gate = gate * width, .noise = narrow_noise}}}};
+        {{cloud.fine.patches(), reference.fine, rule}, {cloud.narrow.patches(), reference.narrow, rule}}};
     return fit_levels(context, levels, from);
   };
-  const FineFit first = wide(kFirst, noise, start), of_both = both(kFirst, first.pose);
-  return of_both.count - first.count < kShare * first.count ? wide(kGate, noise, first.pose)
+  const FineFit first = wide(kFirst, kStrip, start), of_both = both(kFirst, first.pose);
+  return of_both.count - first.count < kShare * first.count ? wide(kGate, kStrip, first.pose)
                                                             : both(kGate, of_both.pose);
 }
 
