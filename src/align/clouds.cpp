@@ -71,7 +71,7 @@ void tell_fit(const FineFit& fit, const Known& cloud, const Known& reference, Cl
 Placed place(const Context& context, const Known& cloud, const Known& reference, bool local) {
   const Jury jury(cloud, reference);
   const Case of{context, cloud, reference, jury};
-  std::vector<Hypothesis> judged = judge(context, cloud, reference, jury, local);
+  std::vector<Hypothesis> judged = judged_poses(context, cloud, reference, jury, local);
   Rest rest{best_of(of, judged), {}};
   rest.fit = last_fit(context, cloud, reference, rest.place.pose);
   // Where the last fit leaves the place that the ones before it found, it must rest in the other.

@@ -102,8 +102,8 @@ void search_tilted(const Context& context, const Known& cloud, const Known& refe
 
 }  // namespace
 
-std::vector<Hypothesis> judge(const Context& context, const Known& cloud, const Known& reference,
-                              const Jury& jury, bool local) {
+std::vector<Hypothesis> judged_poses(const Context& context, const Known& cloud, const Known& reference,
+                                     const Jury& jury, bool local) {
   constexpr std::size_t kBeside = 3;
   constexpr int kRounds = 3;
   constexpr double kFarBelow = 20.0;  // cells

@@ -9,7 +9,7 @@ namespace ray::align {
 
 /// Hypotheses, the best first. What slides along walls is fitted to many places: so those beside the best few
 /// are looked for too, and those beside the best of all until there is no better.
-[[nodiscard]] std::vector<Hypothesis> judge(const Context& context, const Known& cloud,
-                                            const Known& reference, const Jury& jury, bool local);
+[[nodiscard]] std::vector<Hypothesis> judged_poses(const Context& context, const Known& cloud,
+                                                   const Known& reference, const Jury& jury, bool local);
 
 }  // namespace ray::align
